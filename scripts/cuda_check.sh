@@ -2,13 +2,13 @@
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device,
 # and times it. Exit code 1 if anything differs.
 #
-# BUNDLE is made by scripts/bundle.sh of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench and
+# BUNDLE is made by scripts/bundle.sh of control-loop, cuda_tests, vpm-bench and
 # vpm-query. LEVELS are like 1000,17000. The published results use bunny.off by `vpm-pack --spheres 100000` and
 # `vpm-graph --levels 1000,17000`, and the image of `make-example FOLDER tilted-wall` by `vpm-normals --intrinsics
 # 525,525,319.5,239.5 --depth-scale 5000`.
 #
-# Steps: (1) runs every test of tests/cuda; (2) runs small queries under compute-sanitizer's four tools, and the
-# baseline under memcheck; (3) compares the results of CPU and device byte for byte along one path, for both measures,
+# Steps: (1) runs every test of tests/cuda; (2) runs small queries under compute-sanitizer's four tools;
+# (3) compares the results of CPU and device byte for byte along one path,
 # one by one and in batches, and compares the results of vpm-bench's suites; (4) times ten thousand queries
 # at each level, with eight tools and clouds taking turns, in ROUNDS (5) rounds, and reports
 # medians; (5) times a hundred thousand poses in batches, of one tool and of eight; (6) calls
@@ -20,7 +20,7 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 verdict() { if "$@" >"$work/log" 2>&1; then echo pass; else tail -20 "$work/log" >&2; echo FAIL; fi; }
 
-run_tests() { "$bundle/bin/cuda_tests" --gtest_brief=1 && "$bundle/bin/cuda_baseline_tests" --gtest_brief=1; }
+run_tests() { "$bundle/bin/cuda_tests" --gtest_brief=1; }
 tests=$(verdict run_tests)
 sanitizers=()
 sanitize() {  # TOOL PROGRAM NAME
@@ -29,19 +29,16 @@ sanitize() {  # TOOL PROGRAM NAME
     "$bundle/bin/$2" --gtest_brief=1 --gtest_filter='*SmallQuery*')")
 }
 for sanitizer in memcheck racecheck initcheck synccheck; do sanitize $sanitizer cuda_tests $sanitizer; done
-sanitize memcheck cuda_baseline_tests memcheck-baseline
 
 "$bundle/bin/control-loop" "$tool" "$cloud" device=cpu queries=1 poses="$work/poses.jsonl" path=400 >/dev/null
 query=("$bundle/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet --force)
 same=()
-for measure in refined paper; do
-  for level in ${levels//,/ }; do
-    ask=("${query[@]}" --measure "$measure" --level "$level" --poses "$work/poses.jsonl")
-    "${ask[@]}" --count-points --device cpu -o "$work/cpu.jsonl"
-    "${ask[@]}" --count-points --device cuda -o "$work/one.jsonl"
-    "${ask[@]}" --count-points --device cuda --batch 128 -o "$work/many.jsonl"
-    same+=("$measure:$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
-  done
+for level in ${levels//,/ }; do
+  ask=("${query[@]}" --level "$level" --poses "$work/poses.jsonl")
+  "${ask[@]}" --device cpu -o "$work/cpu.jsonl"
+  "${ask[@]}" --device cuda -o "$work/one.jsonl"
+  "${ask[@]}" --device cuda --batch 128 -o "$work/many.jsonl"
+  same+=("$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
 done
 
 suite_answers() {  # SUITE DEVICE: writes a suite's results without times and without parts that only the CPU runs
@@ -70,14 +67,12 @@ for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
   for level in ${levels//,/ }; do
     row() { "${loop[@]}" level="$level" "${@:2}" json="$work/loop-$level-$1-$round.json" >/dev/null; }
     for copies in 1 8; do row $copies rotate=$copies queries=10000; done
-    row paper rotate=8 queries=4000 measure=paper
   done
 done
 for level in ${levels//,/ }; do
   row() { "${loop[@]}" level="$level" batch=16384 "${@:2}" json="$work/batch-$level-$1.json" >/dev/null; }
   row one queries=114688
   row tools queries=114688 rotate=8
-  row paper queries=16384 measure=paper
 done
 
 python3 - "$out" "$work" "$commit" "$tests" "${sanitizers[*]}" "${same[*]}" "$(dirname "$0")" <<'PYTHON'

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: times depth images that are prepared on an
-# NVIDIA device. BUNDLE is made by scripts/bundle.sh of control-loop and frame-stages; CLOUD has a camera. Steps: (1)
-# times the stages on the device's clock; (2) times a thousand queries at each level, each in a new image, from the
+# NVIDIA device. BUNDLE is made by scripts/bundle.sh of control-loop; CLOUD has a camera. Times a thousand queries at each level, each in a new image, from the
 # image in the frames' memory to the result, or in the image before while the new one is made. Reports medians of ROUNDS
 # (5) rounds, since a machine or its bus may be slow for a while. scripts/cuda_check.sh calls it.
 set -euo pipefail
@@ -9,7 +8,6 @@ bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$bundle/bin/frame-stages" "$cloud" "$work/stages.json" >/dev/null
 loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=1000)
 for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
   for level in ${levels//,/ }; do
@@ -29,15 +27,12 @@ smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version,pcie.link.g
 report = {
     "command": "scripts/cuda_frames_check.sh", "commit": commit, "device": ", ".join(smi[:2]),
     "bus": f"PCIe {smi[2]} x{smi[3]}",
-    "stages": json.load(open(f"{work}/stages.json")),
     "control_loop": sorted(loop_rounds.loops_in(work),
                            key=lambda r: [r["spheres"], "frames" in r] +
                                          [r.get(key, "") for key in ("behind", "frames")]),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{report['device']}, {report['bus']}, commit {commit}")
-for r in report["stages"]:
-    print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f} us")
 for r in report["control_loop"]:
     what = r["frames"] + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
     print(f"{r['spheres']:8} spheres  {what:18} {loop_rounds.in_words(r)}")

@@ -25,7 +25,7 @@ if [[ -z $bundle ]]; then
   build
   bundle=$work/bundle
   "$here/bundle.sh" "$repository/build/release" "$bundle" vpm-pack vpm-graph vpm-normals vpm-query vpm-bench control-loop \
-    frame-stages make-example cuda_tests cuda_baseline_tests
+    make-example cuda_tests
   commit=$(git -C "$repository" rev-parse --short HEAD)
 fi
 
@@ -46,7 +46,7 @@ ROUNDS=1 "$here/cuda_frames_check.sh" "$bundle" "$out/cuda_frames_million.json" 
 if [[ $(nvidia-smi -L | wc -l) -gt 1 ]]; then
   "$here/cuda_devices_check.sh" "$bundle" "$out/cuda_devices.json" "$work/100000.vpmg" "$cloud" 1000,17000,100000 "$commit" || failed=1
 fi
-"$bundle/bin/vpm-bench" scaling --all --baseline --out "$out" || failed=1
+"$bundle/bin/vpm-bench" scaling --all --out "$out" || failed=1
 "$bundle/bin/vpm-bench" tradeoff --device cuda --out "$out" || failed=1
 "$bundle/bin/vpm-bench" replay --device cuda --data "$data" --out "$out" || failed=1
 exit $failed

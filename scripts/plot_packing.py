@@ -13,23 +13,18 @@ import numpy as np
 
 from plot_folder import draw_folder
 
-STYLES = {"vpm-pack": "-", "refined voxels": "--", "voxel centres": ":"}
 APOLLONIAN = -0.2126  # exponent of what greedy packings leave uncovered
 
 
 def draw_coverage(axis, rows):
     shapes = list(dict.fromkeys(r["shape"] for r in rows))
     for k, shape in enumerate(shapes):
-        for method, style in STYLES.items():
-            line = [r for r in rows if r["shape"] == shape and r["method"] == method]
-            axis.loglog([r["spheres"] for r in line], [1 - r["coverage"] for r in line],
-                        f"C{k}{style}", lw=1.2, label=shape if style == "-" else None)
+        line = [r for r in rows if r["shape"] == shape and r["method"] == "vpm-pack"]
+        axis.loglog([r["spheres"] for r in line], [1 - r["coverage"] for r in line], f"C{k}-", lw=1.2, label=shape)
     most = max(r["spheres"] for r in rows)
     slope = np.array([most / 100, most])
     axis.loglog(slope, 0.35 * (slope / slope[0]) ** APOLLONIAN, "k-", lw=3, alpha=0.3,
                 label=f"N^{APOLLONIAN}")
-    for method, style in STYLES.items():
-        axis.plot([], [], "k" + style, label=method)
     axis.set_xlabel("spheres")
     axis.set_ylabel("share of the volume left uncovered")
     axis.grid(alpha=0.3, which="both")

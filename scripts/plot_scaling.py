@@ -17,11 +17,6 @@ from plot_folder import draw_folder
 MEASURES = {
     "refined": ("refined", "tab:blue", lambda r: r["refined_median_us"] - r["refined_flood_us"],
                 lambda r: r["refined_flood_us"]),
-    "paper": ("as printed, --measure paper", "tab:orange", lambda r: r["paper_median_us"] - r["paper_flood_us"],
-              lambda r: r["paper_flood_us"]),
-    "baseline": ("as printed, its own algorithm", "tab:red", lambda r: r["boundary_us"], lambda r: r["flood_us"]),
-    "launched": ("its traversals launched by the device", "tab:purple", lambda r: r["launched_boundary_us"],
-                 lambda r: r["launched_flood_us"]),
 }
 
 

@@ -101,8 +101,7 @@ def tradeoff_on_device(report):
     deadlines = [r for r in report["results"] if r["varied"] == "deadline"]
     least = min(d["kept"] / d["queries"] for d in deadlines)
     return (table(["spheres"] + [thousands(n) for n in counts],
-                  [[f"{measure}, {NOISE[noise]}: µs"] + [f"{rows[measure, noise, n]['mean_us']:.0f}" for n in counts]
-                   for measure in ("refined", "paper") for noise in NOISE])
+                  [[f"{NOISE[noise]}: µs"] + [f"{rows['refined', noise, n]['mean_us']:.0f}" for n in counts] for noise in NOISE])
             + f"\n\n`--deadline-us {min(d['asked_us'] for d in deadlines):g}`: kept by {100 * least:.2f} % of "
               f"{thousands(deadlines[0]['queries'])} queries in the worst of {len({(d['shape'], d['scene']) for d in deadlines})} scenes, "
               f"with {thousands(min(d['coarsest'] for d in deadlines))} spheres at least.")
@@ -134,8 +133,7 @@ def for_scene(report):
 
 def replay(report):
     queries = {(r["what"], r["spheres"], r["threads"]): r for r in report["results"] if r["part"] == "query"}
-    names = {"refined": "frame prepared", "refined, points counted": "frame prepared, points in spheres counted too",
-             "refined, cold cloud": "frame not prepared",
+    names = {"refined": "frame prepared", "refined, cold cloud": "frame not prepared",
              "distance grid": "dense distance grid of the tool, penalty force, no volume",
              "voxel count": "OpenVDB voxel count, volume, no force"}
     rows = []
@@ -192,12 +190,9 @@ def packing(report):
     rows = []
     for shape in shapes:
         own = at(shape, "vpm-pack", 10000)
-        others = [at(shape, method, 10000) for method in ("refined voxels", "voxel centres")]
         rows.append([shape] + [cover(at(shape, "vpm-pack", n)) for n in counts]
-                    + [f"{own['seconds']:.1f} / {own['cpu_seconds']:.1f} / {own['memory_mb']:.0f}"]
-                    + [f"{cover(r)} in {r['cpu_seconds']:.0f} s" for r in others])
-    return table(["spheres"] + [thousands(n) for n in counts]
-                 + ["s / CPU s / MB", "greedy on voxels, refined", "greedy on voxel centres"], rows)
+                    + [f"{own['seconds']:.1f} / {own['cpu_seconds']:.1f} / {own['memory_mb']:.0f}"])
+    return table(["spheres"] + [thousands(n) for n in counts] + ["s / CPU s / MB"], rows)
 
 
 def packing_growth(report):
@@ -237,13 +232,12 @@ def median_and_p99(r):
 
 
 def cuda(report):
-    rates = {(r["measure"], r["spheres"], r["tools"] > 1): r["poses_per_second"] for r in report["batch"]}
+    rates = {(r["spheres"], r["tools"] > 1): r["poses_per_second"] for r in report["batch"] if r["measure"] == "refined"}
     rate = lambda *key: thousands(int(float(f"{rates[key]:.3g}"))) if key in rates else ""
     copies = max(r["copies"] for r in report["control_loop"])
-    rotated = [r for r in report["control_loop"] if r["copies"] == copies]
-    return table(["measure", "spheres", "query, µs median / p99", "batches, poses/s", "of eight tools"],
-                 [[r["measure"], thousands(r["spheres"]), median_and_p99(r),
-                   rate(r["measure"], r["spheres"], False), rate(r["measure"], r["spheres"], True)]
+    rotated = [r for r in report["control_loop"] if r["copies"] == copies and r["measure"] == "refined"]
+    return table(["spheres", "query, µs median / p99", "batches, poses/s", "of eight tools"],
+                 [[thousands(r["spheres"]), median_and_p99(r), rate(r["spheres"], False), rate(r["spheres"], True)]
                   for r in rotated])
 
 
@@ -255,14 +249,6 @@ def cuda_frame_rows(report):
     return table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts",
                   "in the image before, while the new one is made"],
                  [[thousands(n)] + [r[kind] for kind in ("prepared", "new", "behind")] for n, r in sorted(of.items())])
-
-
-def cuda_frames(report):
-    keys = ("copy_us", "take_us", "make_us")
-    stages = [[r["method"], r["image"]] + [f"{r[key]:.1f}" for key in keys] for r in report["stages"]]
-    return (cuda_frame_rows(report)
-            + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "whole image", "copy alone (the floor), µs",
-                              "brought by the kernel", "normals and all that queries read"], stages))
 
 
 def cuda_devices(report):
@@ -277,23 +263,13 @@ def scaling(report):
     rows = [r for r in report["results"] if r["part"] == "spheres"]
     line = lambda name, key, digits=0: [name] + [f"{r[key]:.{digits}f}" for r in rows]
     text = table(["spheres"] + [thousands(r["spheres"]) for r in rows],
-                 [line("refined, µs median", "refined_median_us"), line("p99", "refined_p99_us"),
-                  line("`--measure paper`, µs median", "paper_median_us"), line("p99", "paper_p99_us"),
-                  line("of that flood, on the device's clock", "paper_flood_us"),
-                  line("as printed, by its own algorithm, µs median", "baseline_median_us"),
-                  line("p99", "baseline_p99_us"), line("of that boundary", "boundary_us"), line("and flood", "flood_us"),
-                  line("each traversal launched by the device", "launched_median_us"), line("p99", "launched_p99_us"),
-                  line("the faster of both to refined", "ratio")])
+                 [line("refined, µs median", "refined_median_us"), line("p99", "refined_p99_us")])
     frames = [r for r in report["results"] if r["part"] == "frame"]
     least_to_most = lambda key, scale, digits: (f"{scale * min(r[key] for r in frames):.{digits}f} to "
                                                 f"{scale * max(r[key] for r in frames):.{digits}f}")
-    total = lambda key: sum(r[key] for r in rows)
     return text + (
         f"\n\nAlong the path, {thousands(frames[0]['spheres'])} spheres, {least_to_most('volume_fraction', 100, 1)} % inside, median of"
-        f" {report['settings']['rounds']} rounds for each of {len(frames)} frames: refined {least_to_most('refined_us', 1, 0)} µs,"
-        f" `--measure paper` {least_to_most('paper_us', 1, 0)} µs, by its own algorithm {least_to_most('baseline_us', 1e-3, 1)} ms, with launches by the device {least_to_most('launched_us', 1e-3, 1)} ms."
-        f" `--measure paper` has every field of the CPU's result in {thousands(total('same_poses_of_paper'))} of"
-        f" {thousands(total('poses'))} poses, its own algorithm the volume, counts and states in {thousands(total('same_poses'))}.")
+        f" {report['settings']['rounds']} rounds for each of {len(frames)} frames: refined {least_to_most('refined_us', 1, 0)} µs.")
 
 
 def reached(accuracy, timing, replay, packing, cuda):
@@ -344,7 +320,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
-             "cuda frames": (cuda_frames, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
+             "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
              "scaling": (scaling, "scaling"), "fuzz": (fuzz, "fuzz")}}
 
 

@@ -15,7 +15,7 @@ import statistics
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("examples", "libvpm", "tests", "tools")
 ENDINGS = {".h", ".cpp", ".cu", ".cuh"}
-QUERY_FOLDERS = ("measure", "scene", "backend", "temporal", "query")
+QUERY_FOLDERS = ("measure", "scene", "backend", "query")
 LONG = 50  # lines of a function
 STRING = re.compile(r'"(?:\\.|[^"\\])*"|(?<!\w)\'(?:\\.|[^\'\\])+\'')
 

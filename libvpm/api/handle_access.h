@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "libvpm/core/handle.h"
 #include "libvpm/include/vpm/scene.h"
@@ -20,7 +21,10 @@ struct HandleAccess {
   }
 
   static const Cloud& held(const PointCloud& cloud) { return held_by(cloud.cloud_, "PointCloud"); }
-  static const SceneBody& held(const Body& body) { return held_by(body.body_, "Body"); }
+  static const AnyBody& held(const Body& body) { return held_by(body.body_, "Body"); }
+  static const std::vector<AnyBody>& held(const Scene& scene) {
+    return held_by(scene.list_, "Scene");
+  }
   static const ToolModel& held(const Tool& tool) { return held_by(tool.model_, "Tool"); }
   static const CheckedSolid& held(const SolidMesh& mesh) {
     return held_by(mesh.solid_, "SolidMesh");

@@ -1,7 +1,6 @@
 #include "libvpm/include/vpm/level_query.h"
 
 #include "libvpm/api/handle_access.h"
-#include "libvpm/api/scene_body.h"
 #include "libvpm/query/level_tool_query.h"
 
 namespace vpm {
@@ -14,7 +13,7 @@ struct LevelQuery::Impl {
 LevelQuery::LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
                        const Scene& scene, const Pose& first_pose)
     : impl_(new Impl{tool, LevelToolQuery(HandleAccess::held(tool), options, request,
-                                          view_of(scene), first_pose)}) {}
+                                          HandleAccess::held(scene), first_pose)}) {}
 LevelQuery::~LevelQuery() = default;
 LevelQuery::LevelQuery(LevelQuery&&) noexcept = default;
 LevelQuery& LevelQuery::operator=(LevelQuery&&) noexcept = default;
@@ -24,7 +23,7 @@ LevelQuery::Impl& LevelQuery::impl() const {
 }
 
 Result LevelQuery::run(const Scene& scene, const Pose& pose) {
-  return impl().query.run(view_of(scene), pose);
+  return impl().query.run(HandleAccess::held(scene), pose);
 }
 
 std::uint32_t LevelQuery::level() const {

@@ -3,7 +3,6 @@
 #include <deque>
 
 #include "libvpm/api/handle_access.h"
-#include "libvpm/api/scene_body.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
 
@@ -35,11 +34,11 @@ Query::Impl& Query::impl() const {
 }
 
 Result Query::run(const Scene& scene, const Pose& pose) {
-  return impl().queries.front().run(view_of(scene), pose);
+  return impl().queries.front().run(HandleAccess::held(scene), pose);
 }
 
 void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
-  ToolQuery::run(impl().pointers, view_of(scene), jobs, results);
+  ToolQuery::run(impl().pointers, HandleAccess::held(scene), jobs, results);
 }
 
 void Query::forget() {

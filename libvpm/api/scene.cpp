@@ -1,12 +1,13 @@
 #include "libvpm/include/vpm/scene.h"
 
 #include "libvpm/api/handle_access.h"
-#include "libvpm/api/scene_body.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
 #include "libvpm/include/vpm/depth_stream.h"
+#include "libvpm/scene/any_body.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm {
 namespace {
@@ -57,7 +58,7 @@ std::optional<Camera> PointCloud::camera() const {
 }
 
 Body::Body(const PointCloud& cloud, Denoising points)
-    : body_(std::make_shared<const SceneBody>(PreparedCloud(HandleAccess::held(cloud), points))) {}
+    : body_(std::make_shared<const AnyBody>(HandleAccess::held(cloud), points)) {}
 
 std::size_t Body::points() const {
   return HandleAccess::held(*this).points();
@@ -67,13 +68,10 @@ Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
 
 Scene::Scene(std::vector<Body> bodies) {
   if (bodies.empty()) throw Error(ErrorKind::invalid_argument, "a scene needs a body");
-  if (bodies.size() > 1)
-    throw Error(ErrorKind::unavailable,
-                "a scene of " + std::to_string(bodies.size()) +
-                    " bodies: this version measures a tool against one body at a time",
-                {}, "query the bodies one by one");
-  for (const Body& body : bodies) HandleAccess::held(body);  // throws if it was moved from
+  std::vector<AnyBody> list;
+  for (const Body& body : bodies) list.push_back(HandleAccess::held(body));  // throws if it was moved from
   bodies_ = std::make_shared<const std::vector<Body>>(std::move(bodies));
+  list_ = std::make_shared<const std::vector<AnyBody>>(std::move(list));
 }
 
 const std::vector<Body>& Scene::bodies() const {
@@ -112,7 +110,7 @@ std::span<float> DepthStream::metres() {
 }
 
 Body DepthStream::prepare(const Pose& camera_to_world) {
-  return HandleAccess::make<Body>(SceneBody(impl().frames.prepare(camera_to_world)));
+  return HandleAccess::make<Body>(AnyBody(impl().frames.prepare(camera_to_world)));
 }
 
 }  // namespace vpm

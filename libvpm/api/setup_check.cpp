@@ -6,7 +6,7 @@
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/setup/cloud_checks.h"
 
 namespace vpm {
@@ -20,13 +20,13 @@ std::vector<const ToolModel*> models_of(const std::vector<Tool>& tools) {
 }
 
 // Prepares a depth image; nothing for points, or for another measure.
-std::optional<PreparedCloud> image_of(const Cloud& cloud, Measure measure) {
+std::optional<DepthBody> image_of(const Cloud& cloud, Measure measure) {
   if (!cloud.sensor || measure != Measure::refined) return std::nullopt;
-  return std::optional<PreparedCloud>(std::in_place, cloud);
+  return DepthBody(cloud);
 }
 
-std::optional<DepthSurface> surface_of(const std::optional<PreparedCloud>& image) {
-  return image ? std::optional(image->depth_surface()) : std::nullopt;
+std::optional<DepthSurface> surface_of(const std::optional<DepthBody>& image) {
+  return image ? std::optional(image->surface()) : std::nullopt;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ struct SetupCheck::Impl {
         checks(models_of(tools), HandleAccess::held(cloud), surface_of(image)) {}
 
   std::vector<Tool> tools;  // the checks refer to their models
-  std::optional<PreparedCloud> image;
+  std::optional<DepthBody> image;
   CloudChecks checks;
 };
 

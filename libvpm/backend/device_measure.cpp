@@ -6,8 +6,8 @@
 
 namespace vpm {
 
-void SpreadMeasure::run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
-                        std::span<const Job> jobs, std::span<Result> results) {
+void SpreadMeasure::run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
+                        std::span<const BodyJob> jobs, std::span<BodySum> sums) {
   const auto on_device = [&](std::size_t device) {
     std::vector<DeviceMeasure*> there;
     for (DeviceMeasure* measure : measures)
@@ -17,13 +17,12 @@ void SpreadMeasure::run(const SceneView& scene, std::span<DeviceMeasure* const> 
   if (jobs.size() == 1) {
     DeviceMeasure* const first =
         dynamic_cast<SpreadMeasure&>(*measures[jobs.front().tool]).measures_.front().get();
-    const Job job{jobs.front().pose, 0};
-    first->run(scene, {&first, 1}, {&job, 1}, results);
+    const BodyJob job{jobs.front().to_body, 0};
+    first->run(body, {&first, 1}, {&job, 1}, sums);
     return;
   }
-  const SceneView cloud = scene.cloud();
   std::mutex mutex;
-  std::span<const Job> rest = jobs;
+  std::span<const BodyJob> rest = jobs;
   // Takes half of an even part of the rest, so that all devices end together, but enough to keep
   // one busy.
   const auto take = [&] {
@@ -40,8 +39,8 @@ void SpreadMeasure::run(const SceneView& scene, std::span<DeviceMeasure* const> 
       const std::vector<DeviceMeasure*> there = on_device(device);
       for (auto part = take(); !part.empty(); part = take())
         there.front()->run(
-            cloud, there, part,
-            results.subspan(static_cast<std::size_t>(part.data() - jobs.data()), part.size()));
+            body, there, part,
+            sums.subspan(static_cast<std::size_t>(part.data() - jobs.data()), part.size()));
     }));
   }
   for (auto& each : runs) each.get();  // rethrows

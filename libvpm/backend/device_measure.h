@@ -1,4 +1,4 @@
-// Measures on CUDA devices, with the bits of PaperMeasure and RefinedMeasure.
+// Measures on CUDA devices, with the bits of RefinedMeasure.
 #pragma once
 
 #include <memory>
@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "libvpm/include/vpm/query_types.h"
+#include "libvpm/measure/body_sum.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/depth_frames.h"
+#include "libvpm/scene/any_body.h"
 
 namespace vpm {
 
@@ -16,23 +17,25 @@ class DeviceMeasure {
  public:
   virtual ~DeviceMeasure() = default;
 
-  // Stores the results of `jobs`, whose tools are indices into `measures`: this one and others made
-  // with the same options save the level. Poses must be exact (tool_query.h). A single job of a
-  // single measure takes at most one launch and one wait, and allocates nothing after the first
-  // call on a scene; batches are cut to the device's memory. Copies a cloud to the device on its
-  // first use; a frame made for it lies there already. Throws Error(unavailable) if the device
-  // fails.
-  virtual void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
-                   std::span<const Job> jobs, std::span<Result> results) = 0;
+  // Stores what a body gives for each of `jobs`, whose tools are indices into `measures`: this one
+  // and others made with the same options save the level. A single job of a single measure takes at
+  // most one launch and one wait, and allocates nothing after the first call on a body; batches are
+  // cut to the device's memory. Copies a body to the device on its first use; a frame made for it
+  // lies there already. Throws Error(unavailable) if the device fails.
+  virtual void run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
+                   std::span<const BodyJob> jobs, std::span<BodySum> sums) = 0;
 
-  // Returns the result of a single job.
-  Result run(const SceneView& scene, const Pose& pose) {
+  // Returns what a body gives for a single job.
+  BodySum run(const AnyBody& body, const Pose& to_body) {
     DeviceMeasure* const self = this;
-    const Job job{pose, 0};
-    Result result;
-    run(scene, {&self, 1}, {&job, 1}, {&result, 1});
-    return result;
+    const BodyJob job{to_body, 0};
+    BodySum sum;
+    run(body, {&self, 1}, {&job, 1}, {&sum, 1});
+    return sum;
   }
+
+  // Gives back the copies of bodies that are not in this scene.
+  virtual void keep_only(std::span<const AnyBody> scene) = 0;
 
   // Reads the states of the spheres at the last single job, one per sphere.
   virtual void read_states(std::vector<SphereState>& states) = 0;
@@ -41,7 +44,7 @@ class DeviceMeasure {
   virtual double flood_microseconds() const = 0;
 };
 
-// Makes the measure that the options ask for. On Device::kAll single jobs go to the first device.
+// Makes the refined measure. On Device::kAll single jobs go to the first device.
 // Throws Error(unavailable) in builds without CUDA, or if the device has too little memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    const QueryOptions& options);
@@ -53,11 +56,14 @@ class SpreadMeasure : public DeviceMeasure {
   explicit SpreadMeasure(std::vector<std::unique_ptr<DeviceMeasure>> measures)
       : measures_(std::move(measures)) {}
 
-  // Leaves a single job to the first device. A batch is prepared on the CPU, and a thread for each
-  // device takes jobs as long as any are left. All `measures` must spread over the same devices.
-  void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
-           std::span<const Job> jobs, std::span<Result> results) override;
+  // Leaves a single job to the first device. For a batch, a thread for each device takes jobs as
+  // long as any are left. All `measures` must spread over the same devices.
+  void run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
+           std::span<const BodyJob> jobs, std::span<BodySum> sums) override;
 
+  void keep_only(std::span<const AnyBody> scene) override {
+    for (const auto& measure : measures_) measure->keep_only(scene);
+  }
   void read_states(std::vector<SphereState>& states) override {
     measures_.front()->read_states(states);
   }

@@ -18,6 +18,8 @@ struct FixedSum {
   static constexpr double kOne = static_cast<double>(std::int64_t{1} << Bits);
   std::int64_t value = 0;
 
+  friend constexpr bool operator==(const FixedSum&, const FixedSum&) = default;
+
   // Returns the term as a multiple of 2^-Bits, rounded half away from zero. Uses only IEEE
   // operations and a truncating conversion; copysign avoids a branch, since signs are
   // unpredictable.

@@ -7,6 +7,7 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/measure/tool_piece.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/scene/body.h"
@@ -112,8 +113,9 @@ double fraction_inside(const Level& level, const CellBlock& block, const Cut& pl
   for (std::uint32_t k = block.begin; k < block.end; ++k) {
     const CellSample& s = level.samples[k];
     const double distance = dot(plane.normal, widen(s.center)) - plane.offset;
-    if (distance < s.radius)
-      sum += distance > -s.radius ? s.weight * ball_fraction_inside(distance / s.radius) : s.weight;
+    bool is_cut = false;
+    sum += weight_behind(BallShape<double>{s.radius}, plane.normal, distance, double{s.weight},
+                         is_cut);
   }
   return sum;
 }

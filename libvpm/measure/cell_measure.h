@@ -18,6 +18,17 @@ struct CellResult {
   std::uint32_t point = kNoPoint;  // disk sampled last, where the next search begins
 };
 
+// True if what was found of a cell or of a part of it counts: it has a volume.
+VPM_HD inline bool counts(const ToolSum& sum) {
+  return sum.volume.value != 0;
+}
+// Returns the class of a cell that was measured, of which the parts that need no support are added.
+VPM_HD inline CellClass class_of_result(const CellResult& result) {
+  return result.plane.count > 0                ? CellClass::cut
+         : counts(result.sum) || result.is_far ? CellClass::partial
+                                               : CellClass::free;
+}
+
 // Adds a mass wholly behind the surface, pushed along a normal in the tool's axes.
 VPM_HD inline void add_whole(const ToolReach& tool, const BlockMass& mass, Vec3 normal,
                              ToolSum& sum) {
@@ -89,12 +100,19 @@ class CellMeasure {
         add_if_far(piece_of(cell_.samples[s]));
     }
   }
-  // Returns the part of a cell wholly behind the surface that is inside.
+  // Returns the part of a cell wholly behind the surface that is inside. `mass` is the cell's.
   template <class Supports>
-  VPM_HD ToolSum whole(const Supports& supports) const {
+  VPM_HD ToolSum whole(const Supports& supports, const BlockMass& mass) const {
     ToolSum sum;
-    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-      add_whole_piece(supports, piece_of(cell_.masses[b], cell_.blocks[b]), sum);
+    const bool compact = is_compact(cell_.reach, tool_reach_.length);
+    if (whole_part(compact, true, false) == WholePart::cell) {
+      add_whole_piece(supports, piece_of(mass, cell_), sum);
+      return sum;
+    }
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
+      if (whole_part(compact, b == cell_.begin, true) == WholePart::block)
+        add_whole_piece(supports, piece_of(cell_.masses[b], cell_.blocks[b]), sum);
+    }
     return sum;
   }
   template <class Supports>

@@ -150,6 +150,15 @@ VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
   return radius >= kLeastDivided * tool.length;
 }
 
+// Tells which part of a cell wholly behind the surface one of its blocks stands for. A compact cell
+// counts by its centroid, once; others by the centroids of their blocks.
+enum class WholePart : std::uint8_t { nothing, cell, block };
+// `is_first` is true of a cell's first block, or for a cell without blocks.
+VPM_HD constexpr WholePart whole_part(bool cell_is_compact, bool is_first, bool has_block) {
+  if (cell_is_compact) return is_first ? WholePart::cell : WholePart::nothing;
+  return has_block ? WholePart::block : WholePart::nothing;
+}
+
 // Tells how the surface meets a block of samples of an ambiguous cell.
 enum class BlockClass : std::uint8_t {
   free,       // counts for nothing

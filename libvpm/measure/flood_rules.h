@@ -33,18 +33,16 @@ enum class FloodState : std::uint8_t {
 };
 
 // The same of a cell on a device, as a word of bits that threads add in any order. Where a camera
-// tells what is inside, only `cut`, `counts_points` and `counted` are set; the rest serves the
-// flood.
+// tells what is inside, only `cut` and `counted` are set; the rest serves the flood.
 namespace cell_bit {
 inline constexpr std::uint32_t cut = 1;      // the surface passes through a piece
 inline constexpr std::uint32_t partial = 2;  // pieces are behind it, as far as the sum says
 inline constexpr std::uint32_t whole = 4;    // behind the surface
 // Behind a surface that may be another one: the plane of the nearest cut cell decides.
 inline constexpr std::uint32_t hidden = 8;
-inline constexpr std::uint32_t summed = 16;         // the sum of a cut cell is noted
-inline constexpr std::uint32_t counts_points = 32;  // the surface may pass the sphere
-inline constexpr std::uint32_t reached = 64;        // the flood of a block alone has come
-inline constexpr std::uint32_t counted = 128;       // in the result: cut as boundary, else inside
+inline constexpr std::uint32_t summed = 16;   // the sum of a cut cell is noted
+inline constexpr std::uint32_t reached = 32;  // the flood of a block alone has come
+inline constexpr std::uint32_t counted = 64;  // in the result: cut as boundary, else inside
 }  // namespace cell_bit
 
 // True if a cell with these bits is inside if the flood reaches it.
@@ -129,6 +127,19 @@ VPM_HD inline bool is_hidden_cell(double gap_squared, double tool_reach) {
 VPM_HD inline bool lies_near_sheet(double gap_squared, double cut_reach, double reach) {
   const double near = kSheetReach * (cut_reach + reach);
   return gap_squared <= near * near;
+}
+
+// True if the flood enters a cell from a cut neighbour: both are near one sheet, or the neighbour's
+// plane has the cell behind it, which is_behind() tells where it is needed.
+template <class IsBehind>
+VPM_HD bool enters(double gap_squared, double cut_reach, double reach, const IsBehind& is_behind) {
+  return lies_near_sheet(gap_squared, cut_reach, reach) || is_behind();
+}
+// True if the flood passes a cell behind the surface: it is no further behind than the tool's
+// radius, or the plane of the nearest cut cell has it behind it.
+template <class IsBehind>
+VPM_HD bool passes(bool is_hidden, const IsBehind& is_behind) {
+  return !is_hidden || is_behind();
 }
 
 }  // namespace vpm

@@ -6,7 +6,6 @@
 #include "libvpm/core/fixed_sum.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/core/vec3.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/body.h"
 
@@ -18,6 +17,8 @@ namespace vpm {
 struct ToolSum {
   using Sum = FixedSum<60>;
   Sum volume, force[3], torque[3];
+
+  friend bool operator==(const ToolSum&, const ToolSum&) = default;
 
   VPM_HD void add(double part, Vec3 normal, Vec3 arm) { add_moment(part, part * arm, normal); }
   // Adds parts that are pushed along one normal: the sum of their volumes, and the sum of each
@@ -43,17 +44,6 @@ struct ToolSum {
       vpm::add_atomically(force[k].value, other.force[k].value);
       vpm::add_atomically(torque[k].value, other.torque[k].value);
     }
-  }
-
-  // Writes the sums in SI units and world axes; `rotation` maps tool axes to the world's.
-  VPM_HD void write(const ToolModel& tool, const Rotation& rotation, Result& result) const {
-    result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // rounding may pass 1
-    result.volume = tool.volume * result.volume_fraction;
-    result.wrench.force =
-        tool.volume * (rotation * Vec3{force[0].real(), force[1].real(), force[2].real()});
-    result.wrench.torque =
-        tool.volume *
-        (tool.reach * (rotation * Vec3{torque[0].real(), torque[1].real(), torque[2].real()}));
   }
 };
 

@@ -88,7 +88,7 @@ constexpr double kShortest = 1e-8;
 }  // namespace
 
 LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& options,
-                               const LevelRequest& request, const SceneView& scene,
+                               const LevelRequest& request, std::span<const AnyBody> scene,
                                const Pose& first_pose)
     : request_(request) {
   if (!request.asks()) {
@@ -112,7 +112,7 @@ LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& option
 
 // Returns the index of the finest level that the request allows.
 std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOptions& options,
-                                          const SceneView& scene, const Pose& pose) {
+                                          std::span<const AnyBody> scene, const Pose& pose) {
   if (request_.max_error) {
     if (options.measure == Measure::paper) {
       throw Error(ErrorKind::invalid_argument,
@@ -122,19 +122,19 @@ std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOpti
     return coarsest_level_within(tool, *request_.max_error);
   }
   if (request_.for_scene) {
-    scale_ = scene_scale(scene.cloud(), tool.reach, pose * tool.center_of_mass);
+    scale_ = scene_scale(scene, tool.reach, pose * tool.center_of_mass);
     return level_for_scene(tool, *scale_);
   }
   return tool.levels.size() - 1;
 }
 
-double LevelToolQuery::timed_run(std::size_t k, const SceneView& scene, const Pose& pose) {
+double LevelToolQuery::timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose) {
   const auto begin = std::chrono::steady_clock::now();
   result_ = queries_[k].run(scene, pose);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Result LevelToolQuery::run(const SceneView& scene, const Pose& pose) {
+Result LevelToolQuery::run(std::span<const AnyBody> scene, const Pose& pose) {
   used_ = deadline_ ? deadline_->level() : 0;
   reason_ = reason_now();
   seconds_ = timed_run(used_, scene, pose);
@@ -142,7 +142,7 @@ Result LevelToolQuery::run(const SceneView& scene, const Pose& pose) {
   return result_;
 }
 
-void LevelToolQuery::run(const SceneView& scene, std::span<const Job> jobs,
+void LevelToolQuery::run(std::span<const AnyBody> scene, std::span<const Job> jobs,
                          std::span<Result> results) {
   reason_ = reason_now();
   const auto begin = std::chrono::steady_clock::now();
@@ -163,19 +163,20 @@ LevelReason LevelToolQuery::reason_now() const {
                                           : LevelReason::deadline_over_scene;
 }
 
-std::vector<double> LevelToolQuery::probe(const ToolModel& tool, const SceneView& scene) {
-  const PreparedCloud& cloud = scene.cloud();
+std::vector<double> LevelToolQuery::probe(const ToolModel& tool, std::span<const AnyBody> scene) {
   std::vector<double> slowest(queries_.size(), kShortest);
-  const std::size_t points = cloud.positions().size();
-  for (std::size_t k = 0; k < queries_.size(); ++k) {
+  for (const AnyBody& body : scene) {
+    const std::size_t points = body.positions().size();
     for (std::size_t p = 0; p < std::min(kProbes, points); ++p) {
       const std::size_t point = (2 * p + 1) * points / (2 * kProbes);
-      const Vec3 place = cloud.origin() + widen(cloud.positions()[std::min(point, points - 1)]);
+      const Vec3 place = body.origin() + widen(body.positions()[std::min(point, points - 1)]);
       const Pose pose{{}, place - tool.center_of_mass};
-      std::array<double, kRunsPerProbe> times{};
-      for (double& time : times) time = timed_run(k, cloud, pose);
-      std::sort(times.begin(), times.end());
-      slowest[k] = std::max(slowest[k], times[kRunsPerProbe / 2]);
+      for (std::size_t k = 0; k < queries_.size(); ++k) {
+        std::array<double, kRunsPerProbe> times{};
+        for (double& time : times) time = timed_run(k, scene, pose);
+        std::sort(times.begin(), times.end());
+        slowest[k] = std::max(slowest[k], times[kRunsPerProbe / 2]);
+      }
     }
   }
   return slowest;

@@ -56,13 +56,20 @@ class LevelToolQuery {
  public:
   // Chooses the level. Has the contract of LevelQuery.
   LevelToolQuery(const ToolModel& tool, const QueryOptions& options, const LevelRequest& request,
-                 const SceneView& scene, const Pose& first_pose);
+                 std::span<const AnyBody> scene, const Pose& first_pose);
+  LevelToolQuery(const ToolModel& tool, const QueryOptions& options, const LevelRequest& request,
+                 const AnyBody& body, const Pose& first_pose)
+      : LevelToolQuery(tool, options, request, std::span(&body, 1), first_pose) {}
 
   // Returns the answer at the current level, and chooses the next level if there is a deadline.
-  Result run(const SceneView& scene, const Pose& pose);
+  Result run(std::span<const AnyBody> scene, const Pose& pose);
+  Result run(const AnyBody& body, const Pose& pose) { return run(std::span(&body, 1), pose); }
   // Stores the answers of many jobs. Requires a request without deadline. seconds() is then the
   // mean per job.
-  void run(const SceneView& scene, std::span<const Job> jobs, std::span<Result> results);
+  void run(std::span<const AnyBody> scene, std::span<const Job> jobs, std::span<Result> results);
+  void run(const AnyBody& body, std::span<const Job> jobs, std::span<Result> results) {
+    run(std::span(&body, 1), jobs, results);
+  }
 
   // Returns the query that ran last; without a deadline there is no other.
   const ToolQuery& query() const { return queries_[used_]; }
@@ -75,10 +82,10 @@ class LevelToolQuery {
 
  private:
   std::size_t finest_wanted(const ToolModel& tool, const QueryOptions& options,
-                            const SceneView& scene, const Pose& pose);
+                            std::span<const AnyBody> scene, const Pose& pose);
   LevelReason reason_now() const;
-  double timed_run(std::size_t k, const SceneView& scene, const Pose& pose);
-  std::vector<double> probe(const ToolModel& tool, const SceneView& scene);
+  double timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose);
+  std::vector<double> probe(const ToolModel& tool, std::span<const AnyBody> scene);
 
   LevelRequest request_;
   std::optional<SceneScale> scale_;

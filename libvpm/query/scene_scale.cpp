@@ -36,18 +36,21 @@ struct Patch {
 
 class PatchReader {
  public:
-  PatchReader(const PreparedCloud& cloud, std::vector<std::uint32_t> near, double reach)
-      : cloud_(cloud), near_(std::move(near)), radius_(kPatchRadius * reach) {}
+  PatchReader(const AnyBody& cloud, std::vector<std::uint32_t> near, double reach)
+      : positions_(cloud.positions()),
+        normals_(cloud.normals()),
+        near_(std::move(near)),
+        radius_(kPatchRadius * reach) {}
 
   std::size_t patches() const { return std::min(kPatches, near_.size()); }
 
   Patch read(std::size_t k) const {
     const std::uint32_t seed = near_[(2 * k + 1) * near_.size() / (2 * patches())];
-    const Vec3 place = widen(cloud_.positions()[seed]), normal = widen(cloud_.normals()[seed]);
+    const Vec3 place = widen(positions_[seed]), normal = widen(normals_[seed]);
     std::vector<std::pair<double, std::uint32_t>> found;
     for (const std::uint32_t i : near_) {
-      if (dot(widen(cloud_.normals()[i]), normal) < kSameSide) continue;
-      found.emplace_back(squared_norm(widen(cloud_.positions()[i]) - place), i);
+      if (dot(widen(normals_[i]), normal) < kSameSide) continue;
+      found.emplace_back(squared_norm(widen(positions_[i]) - place), i);
     }
     Patch patch;
     if (found.size() < kNearest) return patch;
@@ -70,16 +73,17 @@ class PatchReader {
     const std::size_t stride = (members.size() + kPatchPoints - 1) / kPatchPoints;
     std::vector<Vec3> points;
     for (std::size_t m = 0; m < members.size(); m += stride)
-      points.push_back(widen(cloud_.positions()[members[m]]));
+      points.push_back(widen(positions_[members[m]]));
     return fit_quadric(points, place, normal);
   }
 
-  const PreparedCloud& cloud_;
+  const std::vector<Vec3f>&positions_, &normals_;
   std::vector<std::uint32_t> near_;
   double radius_;
 };
 
-std::vector<std::uint32_t> points_near(const PreparedCloud& cloud, Vec3 place, double distance) {
+template <class Points>
+std::vector<std::uint32_t> points_near(const Points& cloud, Vec3 place, double distance) {
   std::vector<std::uint32_t> near;
   const Vec3 at = place - cloud.origin();
   cloud.for_ranges_in_ball(at, distance, [&](std::uint32_t begin, std::uint32_t end) {
@@ -104,14 +108,16 @@ double SceneScale::largest_radius() const {
   return std::max(smallest_radius(), std::sqrt(2 * smallest_radius() / curvature));
 }
 
-SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place) {
+SceneScale scene_scale(const AnyBody& cloud, double reach, std::optional<Vec3> place) {
   const std::size_t points = cloud.positions().size();
   if (points < kFewestPoints) {
     refuse("the cloud has " + std::to_string(points) + " points", {},
            "its scale can be told from " + std::to_string(kFewestPoints) + " on");
   }
   std::vector<std::uint32_t> near;
-  if (place) near = points_near(cloud, *place, kNear * reach);
+  if (place)
+    near = cloud.visit(
+        [&](const auto& body) { return points_near(body.prepared(), *place, kNear * reach); });
   if (near.size() < kFewestPoints) {
     near.resize(points);
     for (std::size_t i = 0; i < points; ++i) near[i] = static_cast<std::uint32_t>(i);
@@ -129,6 +135,15 @@ SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<V
   }
   if (spacing.empty()) refuse("the cloud's points lie too scattered to tell its scale");
   return {quantile(spacing, 0.5), quantile(noise, 0.5), quantile(curvature, kMostCurved)};
+}
+
+SceneScale scene_scale(std::span<const AnyBody> scene, double reach, std::optional<Vec3> place) {
+  SceneScale finest = scene_scale(scene.front(), reach, place);
+  for (const AnyBody& body : scene.subspan(1)) {
+    const SceneScale scale = scene_scale(body, reach, place);
+    if (scale.smallest_radius() < finest.smallest_radius()) finest = scale;
+  }
+  return finest;
 }
 
 std::size_t level_for_scene(const ToolModel& tool, const SceneScale& scale) {

@@ -3,20 +3,23 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "libvpm/include/vpm/level_query.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 
 namespace vpm {
 
 // Returns the scale of the surface within kNear tool radii of `place` (world), or of the whole
-// cloud where that holds too few points or no place is given. `reach` is the tool's radius, m. The
+// body where that holds too few points or no place is given. `reach` is the tool's radius, m. The
 // same bits for any thread count and order of points. Throws Error(refused) for fewer than
 // kFewestPoints points.
 inline constexpr double kNear = 1.5;
 inline constexpr std::size_t kFewestPoints = 32;
-SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place);
+SceneScale scene_scale(const AnyBody& body, double reach, std::optional<Vec3> place);
+// Returns that of the body of a scene whose points resolve the smallest spheres.
+SceneScale scene_scale(std::span<const AnyBody> scene, double reach, std::optional<Vec3> place);
 
 // Returns the index of the finest level without spheres below scale.smallest_radius(), else the
 // coarsest. For a calibrated model, returns the coarsest level whose mean error is within kNoBetter

@@ -37,8 +37,7 @@ void for_each_job(std::size_t count, const Body& body) {
 
 // True if one launch can answer for both.
 bool go_together(const QueryOptions& a, const QueryOptions& b) {
-  return a.measure == b.measure && a.device == b.device && a.counts_points == b.counts_points &&
-         a.occluded == b.occluded;
+  return a.measure == b.measure && a.device == b.device && a.occluded == b.occluded;
 }
 
 void check_options(const QueryOptions& options, const ToolModel& tool) {
@@ -46,6 +45,9 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
     invalid("the stiffness must be a positive number");
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach)))
     invalid("the stiffness is so large that forces overflow");
+  if (options.measure == Measure::paper && options.device.is_cuda())
+    invalid("the measure as printed is computed on the CPU only",
+            "leave the device or the other measure out");
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
@@ -56,7 +58,10 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
 }  // namespace
 
 ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
-    : level_(tool.level(options.level)), options_(options), states_(level_.sphere_count) {
+    : tool_(tool),
+      level_(tool.level(options.level)),
+      options_(options),
+      states_(level_.sphere_count) {
   check_options(options, tool);
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);
@@ -67,31 +72,48 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
   }
 }
 
-// Checks that solid occluded space has a camera. A frame has one; the CPU must not prepare it here.
-void ToolQuery::check(const SceneView& scene) const {
-  if (options_.occluded != OccludedSpace::solid || scene.frame() != nullptr) return;
-  if (!scene.cloud().is_organised() && !scene.cloud().positions().empty())
-    refuse(
-        "of points without a camera nobody knows what they hide: solid shadows need a cloud that "
-        "keeps its depth image");
+// Checks that each body of a scene tells what solid occluded space is.
+void ToolQuery::check(std::span<const AnyBody> scene) const {
+  if (scene.empty()) invalid("a scene needs a body");
+  if (options_.occluded != OccludedSpace::solid) return;
+  for (const AnyBody& body : scene)
+    if (!body.tells_inside() && body.points() > 0)
+      refuse(
+          "of points without a camera nobody knows what they hide: solid shadows need a cloud that "
+          "keeps its depth image");
 }
 
-Result ToolQuery::run(const SceneView& scene, const Pose& given) {
+BodySum ToolQuery::measure(const AnyBody& body, std::size_t place, const Pose& pose) {
+  if (paper_) return paper_->run(body, pose, states_);
+  if (refined_) return refined_->run(body, pose, place);
+  return device_->run(body, pose_in_body(body.to_world(), pose, tool_.center_of_mass));
+}
+
+Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given) {
   const Pose pose = exact_pose(given);
   check(scene);
-  Result result;
-  if (device_) {
-    result = device_->run(scene, pose);
-  } else if (paper_) {
-    result = paper_->run(scene.cloud(), pose, states_);
-  } else {
-    result = refined_->run(scene.cloud(), pose);
+  if (device_) device_->keep_only(scene);
+  SceneSum sum;
+  bodies_ = scene.size();
+  if (bodies_ > 1) of_body_.assign(states_.size(), SphereState::outside);
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    sum.add(measure(scene[k], k, pose));
+    if (bodies_ > 1) add_states();
   }
-  finish(result);
-  return result;
+  return finished(sum, pose);
 }
 
-void ToolQuery::run(std::span<ToolQuery* const> queries, const SceneView& scene,
+// Joins the states at the last body with those at the bodies before: cut by any, else inside any.
+void ToolQuery::add_states() const {
+  if (device_) device_->read_states(states_);
+  if (refined_) refined_->read_states(states_);
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    SphereState& joined = of_body_[k];
+    if (states_[k] == SphereState::boundary || joined == SphereState::outside) joined = states_[k];
+  }
+}
+
+void ToolQuery::run(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                     std::span<const Job> jobs, std::span<Result> results) {
   if (jobs.size() != results.size())
     invalid(std::to_string(jobs.size()) + " jobs, but room for " + std::to_string(results.size()) +
@@ -101,7 +123,7 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, const SceneView& scene,
     if (query->options_.coherent && queries.size() > 1)
       invalid("coherent poses follow each other", "ask for them one by one");
     if (!go_together(query->options_, queries.front()->options_))
-      invalid("tools that are queried together need the same measure, device, shadows and points",
+      invalid("tools that are queried together need the same measure, device and shadows",
               "make their queries with the same options");
   }
   for (const Job& job : jobs)
@@ -114,14 +136,32 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, const SceneView& scene,
       results[k] = queries[jobs[k].tool]->run(scene, jobs[k].pose);
     return;
   }
-  std::vector<Job> exact(jobs.size());
-  for_each_job(jobs.size(), [&](std::size_t k) {
-    exact[k] = {exact_pose(jobs[k].pose), jobs[k].tool};
-  });
+  run_on_device(queries, scene, jobs, results);
+}
+
+// Asks body by body: all jobs before one, then before the next.
+void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
+                              std::span<const Job> jobs, std::span<Result> results) {
+  std::vector<Pose> exact(jobs.size());
+  for_each_job(jobs.size(), [&](std::size_t k) { exact[k] = exact_pose(jobs[k].pose); });
   std::vector<DeviceMeasure*> measures;
   for (const ToolQuery* query : queries) measures.push_back(query->device_.get());
-  measures.front()->run(scene, measures, exact, results);
-  for_each_job(jobs.size(), [&](std::size_t k) { queries[jobs[k].tool]->finish(results[k]); });
+  measures.front()->keep_only(scene);
+  std::vector<BodyJob> placed(jobs.size());
+  std::vector<BodySum> of_body(jobs.size());
+  std::vector<SceneSum> sums(jobs.size());
+  for (const AnyBody& body : scene) {
+    for_each_job(jobs.size(), [&](std::size_t k) {
+      const std::uint32_t tool = jobs[k].tool;
+      placed[k] = {pose_in_body(body.to_world(), exact[k], queries[tool]->tool_.center_of_mass),
+                   tool};
+    });
+    measures.front()->run(body, measures, placed, of_body);
+    for_each_job(jobs.size(), [&](std::size_t k) { sums[k].add(of_body[k]); });
+  }
+  for_each_job(jobs.size(), [&](std::size_t k) {
+    results[k] = queries[jobs[k].tool]->finished(sums[k], exact[k]);
+  });
 }
 
 void ToolQuery::forget() {
@@ -129,15 +169,17 @@ void ToolQuery::forget() {
 }
 
 std::span<const SphereState> ToolQuery::states() const {
+  if (bodies_ > 1) return of_body_;
   if (device_) device_->read_states(states_);
   if (refined_) refined_->read_states(states_);
   return states_;
 }
 
-void ToolQuery::finish(Result& result) const {
-  if (!options_.counts_points && options_.measure == Measure::refined) result.points.reset();
+Result ToolQuery::finished(const SceneSum& sum, const Pose& pose) const {
+  Result result = sum.result(tool_, pose.rotation);
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
+  return result;
 }
 
 }  // namespace vpm

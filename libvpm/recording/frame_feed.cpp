@@ -26,15 +26,13 @@ void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
   ImportOptions options = options_;
   if (frame.camera) options.to_world = frame.camera;
   const ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
-  if (scan.image && device_.is_cuda())
-    result.depth = on_device(scan, frame.path);
-  else
-    result.cloud = prepared(scan, frame.path);
+  result.body = body_of(scan, frame.path);
   result.remarks = scan.remarks;
   if (scan.image) result.camera = scan.image->camera;
 }
 
-DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& name) {
+AnyBody FrameReader::body_of(const ImportedScan& scan, const std::string& name) {
+  if (!scan.image) return AnyBody(PointsBody(scan.points, points_));
   const auto& [camera, depth] = *scan.image;
   if (!frames_ || !same_image_size_and_rays(camera, camera_)) {
     frames_.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height, std::nullopt,
@@ -42,28 +40,15 @@ DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& n
     camera_ = camera;
   }
   std::copy(depth.depth.begin(), depth.depth.end(), frames_->metres().begin());
-  DepthFrame frame = frames_->prepare(camera.to_world);
-  if (frame.points() == 0) throw nothing_with_normal(scan, name);
-  return frame;
-}
-
-std::unique_ptr<PreparedCloud> FrameReader::prepared(const ImportedScan& scan,
-                                                     const std::string& name) {
-  if (!scan.image) return std::make_unique<PreparedCloud>(scan.points, points_);
-  std::unique_ptr<PreparedCloud> cloud =
-      spare_ ? std::move(spare_) : std::make_unique<PreparedCloud>(Cloud{});
-  preparation_.prepare(scan.image->depth, scan.image->camera, *cloud);
-  if (cloud->positions().empty()) {
-    spare_ = std::move(cloud);
-    throw nothing_with_normal(scan, name);
-  }
-  return cloud;
+  const DepthBody body = frames_->prepare(camera.to_world);
+  if (body.points() == 0) throw nothing_with_normal(scan, name);
+  return body;
 }
 
 PreparedChange FrameReader::prepare(FrameChange change) {
   const auto start = std::chrono::steady_clock::now();
   PreparedChange result;
-  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.has_frame(); ++at) {
+  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.body; ++at) {
     const RecordedFrame& frame = recording_.frames[*at];
     const auto fails = [&](FrameFault fault, const std::string& message) {
       result.unusable.push_back({*at, fault, message});
@@ -90,9 +75,7 @@ PreparedChange FrameReader::prepare(FrameChange change) {
 
 FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
                      const ImportOptions& options, const Device& device, Denoising points)
-    : recording_(recording),
-      schedule_(recording, schedule),
-      cloud_(std::make_unique<PreparedCloud>(Cloud{})) {
+    : recording_(recording), schedule_(recording, schedule) {
   const FrameSchedule all = schedule_;
   next_ = schedule_.next();
   thread_ = std::thread(
@@ -120,10 +103,8 @@ void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options
       moved_.wait(lock, [&] { return stop_ || ready_.size() < kAhead; });
       if (stop_) return;
       ready_.push_back(std::move(result));
-      auto done = std::exchange(done_, {});
       lock.unlock();
       moved_.notify_all();
-      if (!done.empty()) reader.give_back(std::move(done.front()));
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -148,15 +129,14 @@ PreparedChange FrameFeed::take() {
   if (ready_.empty()) std::rethrow_exception(failure_);
   PreparedChange change = std::move(ready_.front());
   ready_.pop_front();
-  if (change.has_frame() && cloud_) done_.push_back(std::move(cloud_));
   lock.unlock();
   moved_.notify_all();
   return change;
 }
 
 void FrameFeed::count(const PreparedChange& taken) {
-  counts_.used += taken.has_frame();
-  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - taken.has_frame();
+  counts_.used += taken.body.has_value();
+  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - taken.body.has_value();
   counts_.late += taken.change.is_late;
   for (const UnusableFrame& frame : taken.unusable) {
     counts_.lost += frame.fault == FrameFault::lost;
@@ -171,9 +151,8 @@ const PreparedChange* FrameFeed::advance_to(std::size_t step) {
   taken_ = take();
   next_ = schedule_.next();
   count(taken_);
-  if (taken_.has_frame()) {
-    cloud_ = std::move(taken_.cloud);
-    depth_ = std::exchange(taken_.depth, std::nullopt);
+  if (taken_.body) {
+    body_ = *std::exchange(taken_.body, std::nullopt);
     frame_ = taken_.frame;
   }
   return &taken_;

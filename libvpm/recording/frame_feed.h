@@ -11,8 +11,8 @@
 
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/recording/frame_schedule.h"
+#include "libvpm/scene/any_body.h"
 #include "libvpm/scene/depth_frames.h"
-#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm {
 
@@ -31,17 +31,12 @@ struct UnusableFrame {
 // Prepared result of all frames that come at one step: the newest usable one.
 struct PreparedChange {
   FrameChange change;
-  // Frame on the CPU; both this and `depth` are empty if no frame is usable, and the loop keeps the
-  // last one.
-  std::unique_ptr<PreparedCloud> cloud;
-  std::optional<DepthFrame> depth;  // frame on a device
-  std::size_t frame = 0;            // index in the recording, if there is a frame
-  std::optional<Camera> camera;     // camera of the frame, if it is an image
+  std::optional<AnyBody> body;   // empty if no frame is usable: the loop keeps the last one
+  std::size_t frame = 0;         // index in the recording, if there is a frame
+  std::optional<Camera> camera;  // camera of the frame, if it is an image
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // time from the file to the prepared frame
   Remarks remarks;     // remarks of the reader about the frame
-
-  bool has_frame() const { return cloud != nullptr || depth.has_value(); }
 };
 
 // Reads and prepares frames on the calling thread. Keeps a reference to the recording.
@@ -51,27 +46,18 @@ class FrameReader {
   // from the recording.
   FrameReader(const Recording& recording, const ImportOptions& options, const Device& device = {},
               Denoising points = Denoising::on)
-      : recording_(recording),
-        options_(options),
-        device_(device),
-        points_(points),
-        preparation_(options.normals, points) {}
+      : recording_(recording), options_(options), device_(device), points_(points) {}
 
   PreparedChange prepare(FrameChange change);
-  // Takes back a cloud that is no longer needed, to reuse its memory for the next frame.
-  void give_back(std::unique_ptr<PreparedCloud> cloud) { spare_ = std::move(cloud); }
 
  private:
   void read(const RecordedFrame& frame, PreparedChange& result);
-  std::unique_ptr<PreparedCloud> prepared(const ImportedScan& scan, const std::string& name);
-  DepthFrame on_device(const ImportedScan& scan, const std::string& name);
+  AnyBody body_of(const ImportedScan& scan, const std::string& name);
 
   const Recording& recording_;
   ImportOptions options_;
   Device device_;
   Denoising points_;
-  FramePreparation preparation_;
-  std::unique_ptr<PreparedCloud> spare_;
   std::optional<DepthFrames> frames_;
   Camera camera_;  // camera of frames_
 };
@@ -101,13 +87,11 @@ class FrameFeed {
   void wait_for_first();
 
   // Returns what comes with this step, or null; to be called for each step in turn. Moves the frame
-  // into the feed, where cloud() or depth_frame() returns it until the next change.
+  // into the feed, where body() returns it until the next change.
   const PreparedChange* advance_to(std::size_t step);
 
-  // Returns the current cloud; empty before the first usable frame.
-  const PreparedCloud& cloud() const { return depth_ ? depth_->cloud() : *cloud_; }
-  // Returns the current frame on a device, or null if it is on the CPU.
-  const DepthFrame* depth_frame() const { return depth_ ? &*depth_ : nullptr; }
+  // Returns the current frame; one of points before the first usable frame.
+  const AnyBody& body() const { return body_; }
   std::optional<std::size_t> frame() const { return frame_; }
   const FrameCounts& counts() const { return counts_; }
 
@@ -123,8 +107,7 @@ class FrameFeed {
   const Recording& recording_;
   FrameSchedule schedule_;  // schedule of the loop; the thread has a copy
   std::optional<FrameChange> next_;
-  std::unique_ptr<PreparedCloud> cloud_;
-  std::optional<DepthFrame> depth_;
+  AnyBody body_{Cloud{}};
   std::optional<std::size_t> frame_;
   PreparedChange taken_;
   FrameCounts counts_;
@@ -132,8 +115,6 @@ class FrameFeed {
   std::mutex mutex_;
   std::condition_variable moved_;
   std::deque<PreparedChange> ready_;
-  // Clouds that the loop is done with; the next frames reuse their memory.
-  std::vector<std::unique_ptr<PreparedCloud>> done_;
   std::exception_ptr failure_;
   bool stop_ = false;
   std::thread thread_;

@@ -3,9 +3,10 @@
 // without a camera, by the nearest disk) answer; README.md has the reasons.
 //
 // MeasuredBody is the concept; SeesFreeSpace, BoundsGap and HasOtherWalls are what some bodies know
-// besides. The functions below ask for these and answer for bodies that do not have them; such an
-// answer costs work or leaves a refinement out, and is never wrong. All members are const and may
-// be called by many threads at once. Places are in the body's own frame, m.
+// besides; SharesPixels, what is faster so. The functions below ask for these and answer for bodies
+// that do not have them; such an answer costs work or leaves a refinement out, and is never wrong.
+// All members are const and may be called by many threads at once. Places are in the body's own
+// frame, m.
 #pragma once
 
 #include <concepts>
@@ -160,6 +161,7 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSam
   { body.classify_ball(x, length) } -> std::same_as<typename B::BallClass>;
   { in_ball.side } -> std::convertible_to<Side>;
   { in_ball.point } -> std::convertible_to<std::uint32_t>;
+  requires std::default_initializable<typename B::BallClass>;
   { body.sample(x, kNoPoint) } -> std::same_as<SurfaceSample>;
   { body.closest_normal(x, on_surface) } -> std::same_as<Vec3>;
   { body.may_be_flat(in_ball) } -> std::same_as<bool>;
@@ -178,10 +180,19 @@ concept SeesFreeSpace = MeasuredBody<B> &&
   { body.side_of(in_ball, x, length) } -> std::same_as<Side>;
   { body.tells_of_parts(x, length) } -> std::same_as<bool>;
   { body.is_free_part(in_ball, x, length) } -> std::same_as<bool>;
-  { body.may_touch(in_ball, x, length) } -> std::same_as<bool>;
   { B::least_inverse_depth(in_ball) } -> std::same_as<float>;
   { body.may_be_free(0.0F, x, length) } -> std::same_as<bool>;
   { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
+};
+
+// True for a body whose side_of() asks pixels of an ambiguous ball, which lanes of a device share:
+// may_be_seen_past() rules most balls out, and is_seen_past() tests the rows first, first + step,
+// ... of pixels_of() a ball against a depth, which is that of the farthest place in the ball.
+template <class B>
+concept SharesPixels = SeesFreeSpace<B> &&
+    requires(const B& body, double depth, const typename B::BallClass& in_ball) {
+  { body.may_be_seen_past(in_ball, depth) } -> std::same_as<bool>;
+  { body.is_seen_past(B::pixels_of(in_ball), depth, 0U, 1U) } -> std::same_as<bool>;
 };
 
 // True for a body that bounds how far places of a ball behind it are from the surface.
@@ -223,15 +234,6 @@ VPM_HD bool is_free_part(const B& body, const typename B::BallClass& in_ball, Ve
     return body.is_free_part(in_ball, center, radius);
   else
     return false;
-}
-// False if the surface surely does not touch a ball inside a classified one.
-template <MeasuredBody B>
-VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 center,
-                      double radius) {
-  if constexpr (SeesFreeSpace<B>)
-    return body.may_touch(in_ball, center, radius);
-  else
-    return true;
 }
 // Returns the least inverse depth, 1/m, of the surface in a classified ball; 0 where no free space
 // was seen.

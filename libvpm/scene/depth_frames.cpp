@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "libvpm/core/error.h"
-#include "libvpm/scene/frame_preparation.h"
+#include "libvpm/scene/frame_slot.h"
 
 namespace vpm {
 namespace {
@@ -46,19 +46,16 @@ void check_options(const DepthFrameOptions& options) {
 
 }  // namespace
 
-const PreparedCloud& FrameSlot::cloud() const {
+const PreparedImage& FrameSlot::prepared() const {
   const std::lock_guard lock(mutex_);
-  if (!has_cloud_) preparation_.prepare(depth_of(*this), camera_, cloud_);
-  has_cloud_ = true;
-  return cloud_;
+  if (!is_prepared_) preparation_.prepare(depth_of(*this), camera_, prepared_);
+  is_prepared_ = true;
+  return prepared_;
 }
 
-std::size_t DepthFrame::points() const {
-  return slot_->points();
-}
-
-const PreparedCloud& DepthFrame::cloud() const {
-  return slot_->cloud();
+std::uint64_t FrameSlot::serial() const {
+  const std::lock_guard lock(mutex_);
+  return is_prepared_ ? prepared_.serial() : 0;
 }
 
 DepthFrames::DepthFrames(const DepthFrameOptions& options) : options_(options) {
@@ -98,9 +95,9 @@ std::span<float> DepthFrames::metres() {
   return {reinterpret_cast<float*>(slot.image()), slot.pixels()};
 }
 
-DepthFrame DepthFrames::prepare(const Pose& camera_to_world) {
+DepthBody DepthFrames::prepare(const Pose& camera_to_world) {
   next().prepare(camera_to_world);
-  return DepthFrame(std::move(next_));
+  return DepthBody(std::shared_ptr<const FrameSlot>(std::move(next_)));
 }
 
 }  // namespace vpm

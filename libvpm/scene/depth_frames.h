@@ -3,10 +3,10 @@
 //
 //   DepthFrames frames({intrinsics, 640, 480, 1000.0, {}, device_from_text("auto")});
 //   camera.read(frames.counts());                               // 30 times a second
-//   const DepthFrame frame = frames.prepare(camera_to_world);   // begins, and returns at once
+//   const DepthBody frame = frames.prepare(camera_to_world);   // begins, and returns at once
 //   const Result r = query.run(frame, pose);                    // a thousand times a second
 //
-// A query gives the bits that it gives on PreparedCloud(make_cloud(image, camera, normals),
+// A query gives the bits that it gives on DepthBody(make_cloud(image, camera, normals),
 // points), on any device.
 //
 // Frames are immutable and may be held, copied, and queried by several threads; the memory of one
@@ -23,7 +23,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/device/device.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 
 namespace vpm {
 
@@ -34,24 +34,6 @@ struct DepthFrameOptions {
   NormalOptions normals;
   Device device;  // for queries on other devices the CPU prepares frames
   Denoising points = Denoising::on;
-};
-
-class FrameSlot;  // frame_preparation.h
-
-class DepthFrame {
- public:
-  // Returns the number of pixels that have a normal. Waits for the preparation.
-  std::size_t points() const;
-
-  // Returns the frame as the CPU prepares it, on the first call. Throws what PreparedCloud throws.
-  const PreparedCloud& cloud() const;
-
-  const FrameSlot& slot() const { return *slot_; }
-
- private:
-  friend class DepthFrames;
-  explicit DepthFrame(std::shared_ptr<const FrameSlot> slot) : slot_(std::move(slot)) {}
-  std::shared_ptr<const FrameSlot> slot_;
 };
 
 class DepthFrames {
@@ -65,10 +47,10 @@ class DepthFrames {
   std::span<std::uint16_t> counts();
   std::span<float> metres();
 
-  // Returns the frame of that image. `camera_to_world` maps the camera's coordinates to the
+  // Returns the body of that image. `camera_to_world` maps the camera's coordinates to the
   // world's. On a device this only begins the preparation, and queries wait for its end there. An
-  // image or a pose that PreparedCloud refuses is refused here or by the first query.
-  DepthFrame prepare(const Pose& camera_to_world);
+  // image or a pose that PreparedImage refuses is refused here or by the first query.
+  DepthBody prepare(const Pose& camera_to_world);
 
  private:
   FrameSlot& next();
@@ -76,22 +58,6 @@ class DepthFrames {
   DepthFrameOptions options_;
   std::vector<std::shared_ptr<FrameSlot>> slots_;
   std::shared_ptr<FrameSlot> next_;
-};
-
-// Points to a cloud or a frame, which must outlive it.
-class SceneView {
- public:
-  SceneView(const PreparedCloud& cloud) : cloud_(&cloud) {}
-  SceneView(const DepthFrame& frame) : frame_(&frame) {}
-
-  // Returns the frame, or null if the scene is a cloud.
-  const DepthFrame* frame() const { return frame_; }
-  // Returns the cloud; a frame's is prepared by the CPU when first asked for.
-  const PreparedCloud& cloud() const { return frame_ != nullptr ? frame_->cloud() : *cloud_; }
-
- private:
-  const PreparedCloud* cloud_ = nullptr;
-  const DepthFrame* frame_ = nullptr;
 };
 
 }  // namespace vpm

@@ -100,29 +100,27 @@ FramePreparation::FramePreparation(const NormalOptions& options, Denoising point
 }
 
 void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
-                               PreparedCloud& cloud) {
+                               PreparedImage& image) {
   try {
     check_intrinsics(camera.intrinsics);
     if (!is_of_size(depth, camera) || !is_usual(camera) ||
-        !is_in_range(camera.to_world.translation) || !prepare_rows(depth, camera, cloud))
-      cloud = PreparedCloud(make_cloud(depth, camera, options_),
-                            points_);  // may throw
+        !is_in_range(camera.to_world.translation) || !prepare_rows(depth, camera, image))
+      image = PreparedImage(make_cloud(depth, camera, options_), points_);  // may throw
   } catch (...) {
-    cloud = PreparedCloud{Cloud{}};
+    image = {};
     throw;
   }
 }
 
-// Gives the cloud the frame's camera and room for a point in each pixel.
-void FramePreparation::take_camera(const Camera& camera, PreparedCloud& cloud) {
+// Gives the image the frame's camera and room for a point in each pixel.
+void FramePreparation::take_camera(const Camera& camera, PreparedImage& image) {
   const std::size_t width = camera.width, pixels = width * camera.height;
-  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // clears the data of disks
-  cloud.serial_ = PreparedCloud::next_serial();
-  cloud.origin_ = camera.to_world.translation;
-  cloud.camera_ = camera;
-  cloud.positions_.resize(pixels);
-  cloud.normals_.resize(pixels);
-  cloud.pixel_begin_.resize(pixels + 1);
+  image.serial_ = next_serial();
+  image.points_.origin = camera.to_world.translation;
+  image.camera_ = camera;
+  image.points_.positions.resize(pixels);
+  image.points_.normals.resize(pixels);
+  image.pixel_begin_.resize(pixels + 1);
   row_points_.resize(camera.height);
   rays_.resize(width + kTile);
   for (std::size_t u = 0; u < width; ++u)
@@ -131,13 +129,13 @@ void FramePreparation::take_camera(const Camera& camera, PreparedCloud& cloud) {
 
 // Returns false if a normal is not sound.
 bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
-                                    PreparedCloud& cloud) {
+                                    PreparedImage& image) {
   validate(camera, "the cloud");
   const std::size_t width = depth.width;
   const Intrinsics& k = camera.intrinsics;
   const Rotation to_camera =
       relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
-  take_camera(camera, cloud);
+  take_camera(camera, image);
   images_.resize(depth.width, depth.height, options_);
   steps_.resize(depth.width, depth.height);
   SeenImage& seen = steps_.seen();
@@ -153,14 +151,15 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
     for (int v = begin; v < end; ++v) {
       const NormalRow& row = band.estimate(v);
       const std::size_t at = static_cast<std::size_t>(v) * width;
-      Vec3f *positions = cloud.positions_.data() + at, *normals = cloud.normals_.data() + at;
+      Vec3f *positions = image.points_.positions.data() + at,
+            *normals = image.points_.normals.data() + at;
       const auto [points, sound] =
           place_row({static_cast<int>(width), (v - k.cy) / k.fy, camera.to_world.rotation,
                      to_camera, depth.depth.data() + at, row, rays_.data(), positions, normals,
                      seen.x.at(0, v), seen.y.at(0, v), seen.z.at(0, v), exists.data()});
       if (!sound) is_sound = false;
       row_points_[static_cast<std::size_t>(v)] = points;
-      std::uint32_t* pixel_begin = cloud.pixel_begin_.data() + at;
+      std::uint32_t* pixel_begin = image.pixel_begin_.data() + at;
       if (points < width)
         compact_row(exists.data(), static_cast<int>(width), static_cast<std::uint32_t>(at),
                     positions, normals, pixel_begin);
@@ -169,13 +168,13 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
       made(v);
     }
   };
-  steps_.make(points_, take, find, cloud.image_);
-  close_ranks(width, cloud);
+  steps_.make(points_, take, find, image.image_);
+  close_ranks(width, image);
   return is_sound;
 }
 
 // Moves each row's points from its first pixel to behind those of the row above.
-void FramePreparation::close_ranks(std::size_t width, PreparedCloud& cloud) const {
+void FramePreparation::close_ranks(std::size_t width, PreparedImage& image) const {
   std::uint32_t first = 0;
   for (std::size_t v = 0; v < row_points_.size(); ++v) {
     const auto at = static_cast<std::uint32_t>(v * width);
@@ -183,15 +182,15 @@ void FramePreparation::close_ranks(std::size_t width, PreparedCloud& cloud) cons
       const auto move = [&](std::vector<Vec3f>& points) {
         std::memmove(points.data() + first, points.data() + at, row_points_[v] * sizeof(Vec3f));
       };
-      move(cloud.positions_);
-      move(cloud.normals_);
-      for (std::size_t u = 0; u < width; ++u) cloud.pixel_begin_[at + u] -= at - first;
+      move(image.points_.positions);
+      move(image.points_.normals);
+      for (std::size_t u = 0; u < width; ++u) image.pixel_begin_[at + u] -= at - first;
     }
     first += row_points_[v];
   }
-  cloud.pixel_begin_.back() = first;
-  cloud.positions_.resize(first);
-  cloud.normals_.resize(first);
+  image.pixel_begin_.back() = first;
+  image.points_.positions.resize(first);
+  image.points_.normals.resize(first);
 }
 
 }  // namespace vpm

@@ -1,5 +1,5 @@
 #include "libvpm/core/error.h"
-#include "libvpm/scene/frame_preparation.h"
+#include "libvpm/scene/frame_slot.h"
 
 namespace vpm {
 

@@ -1,5 +1,4 @@
 // Declares what the checks of a setup know of a scene: where it lies, and how it came there.
-// there.
 #pragma once
 
 #include <optional>

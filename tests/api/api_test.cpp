@@ -315,13 +315,20 @@ TEST(PublicApi, ErrorsSayKindPlaceAndRemedy) {
   ASSERT_TRUE(unwritten);
   EXPECT_EQ(unwritten->kind(), vpm::ErrorKind::cannot_write);
 
-  const vpm::Body body = wall().bodies().front();
-  const auto several = error_of([&] { vpm::Scene({body, body}); });
-  ASSERT_TRUE(several);
-  EXPECT_EQ(several->kind(), vpm::ErrorKind::unavailable);
-  EXPECT_FALSE(several->hint().empty());
   EXPECT_EQ(error_of([] { vpm::Scene(std::vector<vpm::Body>{}); })->kind(),
             vpm::ErrorKind::invalid_argument);
+}
+
+TEST(PublicApi, BodiesOfASceneAddUp) {
+  const vpm::Scene one = wall();
+  const vpm::Body body = one.bodies().front();
+  const vpm::Scene two({body, body});
+  EXPECT_EQ(two.bodies().size(), 2U);
+  vpm::Query query(tool());
+  const vpm::Result single = query.run(one, behind(0)), both = query.run(two, behind(0));
+  EXPECT_GT(single.volume, 0);
+  EXPECT_EQ(both.volume, 2 * single.volume);
+  EXPECT_EQ(both.wrench.force.z, 2 * single.wrench.force.z);
 }
 
 TEST(PublicApi, AnErrorsTextIsPlaceProblemAndHint) {

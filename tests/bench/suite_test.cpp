@@ -49,8 +49,6 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
   refuses(
       "extremes", [](SuiteOptions& o) { o.data = "folder"; }, "accuracy, replay, timing");
   refuses(
-      "replay", [](SuiteOptions& o) { o.baseline = true; }, "scaling");
-  refuses(
       "tradeoff", [](SuiteOptions& o) { o.noise_seed = 2; }, "accuracy");
   refuses(
       "accuracy", [](SuiteOptions& o) { o.data = "folder"; }, "--all");

@@ -7,7 +7,7 @@ namespace vpm::testing {
 namespace {
 
 template <class Body>
-Result run(const ToolModel& tool, const Body& body, const Pose& pose) {
+BodySum run(const ToolModel& tool, const Body& body, const Pose& pose) {
   using namespace vpm::cuda;
   constexpr auto kKernel = one_pose<Body, kManyBlocks>;
   const DeviceLevel level(tool, tool.levels.back(), OccludedSpace::within_reach);
@@ -19,25 +19,29 @@ Result run(const ToolModel& tool, const Body& body, const Pose& pose) {
   counters.clear();
   const MappedArray<Answer> answer(1);
   const Stream stream;
-  PoseFrame frame;
-  frame.to_surface = {pose.rotation, pose * tool.center_of_mass};
-  const RefinedLaunch<Body> launch{level.view(),   body,           {},
-                                   memory.space(), false,          blocks,
-                                   totals.get(),   counters.get(), answer.device()};
-  launch_kernel(kKernel, {blocks, kThreads}, LaunchKind::cooperative, stream.get(), launch, frame,
-                1U);
+  const Pose to_surface{pose.rotation, pose * tool.center_of_mass};
+  const RefinedLaunch<Body> launch{level.view(), body,           memory.space(),
+                                   totals.get(), counters.get(), answer.device()};
+  launch_kernel(kKernel, {blocks, kThreads}, LaunchKind::cooperative, stream.get(), launch,
+                to_surface, 1U);
   const RawResult raw = wait_for(*answer.host(), 1, stream.get());
   check(cudaStreamSynchronize(stream.get()));
-  return result_of(raw, tool, pose.rotation);
+  return sum_of(raw);
 }
 
 }  // namespace
 
-Result run_on_device(const ToolModel& tool, const HalfSpace& body, const Pose& pose) {
+BodySum run_on_device(const ToolModel& tool, const HalfSpace& body, const Pose& pose) {
   return run(tool, body, pose);
 }
-Result run_on_device(const ToolModel& tool, const Both<HalfSpace, HalfSpace>& body,
-                     const Pose& pose) {
+BodySum run_on_device(const ToolModel& tool, const SeenHalfSpace& body, const Pose& pose) {
+  return run(tool, body, pose);
+}
+BodySum run_on_device(const ToolModel& tool, const Step& body, const Pose& pose) {
+  return run(tool, body, pose);
+}
+BodySum run_on_device(const ToolModel& tool, const Both<HalfSpace, HalfSpace>& body,
+                      const Pose& pose) {
   return run(tool, body, pose);
 }
 

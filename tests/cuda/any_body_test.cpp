@@ -6,7 +6,6 @@
 
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/device/device.h"
-#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -24,17 +23,23 @@ void expect_same(const Body& body) {
     RefinedMeasure measure(tool, tool.levels.back(), {});
     for (const double z : {-0.06, 0.02, 0.09}) {
       const Pose pose{testing::generic_rotation(), {0.01, -0.02, z}};
-      const Result expected = measure.run_on(body, Pose{}, pose, nullptr);
+      const BodySum expected = measure.run_on(body, Pose{}, pose);
       ASSERT_GT(expected.boundary, 0U);
-      Result found = testing::run_on_device(tool, body, pose);
-      found.points = expected.points;  // nobody asked for any
-      testing::expect_equal(expected, found);
+      EXPECT_EQ(expected, testing::run_on_device(tool, body, pose));
     }
   }
 }
 
 TEST(AnyBodyOnDevice, AHalfSpace) {
   expect_same(below({0.2, -0.3, 0.9}, 0.01));
+}
+
+TEST(AnyBodyOnDevice, OneThatTellsInside) {
+  expect_same(testing::seen_below({0.2, -0.3, 0.9}, 0.01));
+}
+
+TEST(AnyBodyOnDevice, OneThatSeesFreeSpace) {
+  expect_same(testing::Step{below({0.2, -0.3, 0.9}, 0.01).top, {{1, 0, 0}, {0.03, 0, 0}}});
 }
 
 TEST(AnyBodyOnDevice, TwoAtOnePlace) {

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstring>
 
 #include "libvpm/scene/cuda/cloud_slot.h"
@@ -26,37 +25,24 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 }  // namespace
 
-std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
-  const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
+std::optional<FrameMemory> memory_on_device(const DepthBody& frame) {
+  const auto& slot = dynamic_cast<const cuda::CloudSlot&>(*frame.slot());
   if (!slot.is_on_device() || !slot.is_sound()) return std::nullopt;
   cuda::check(cudaDeviceSynchronize());
-  const cuda::PointsView& points = slot.device_cloud().points();
-  const DepthSurface& surface = slot.device_cloud().depth_surface();
-  FrameMemory memory{fetched(points.positions, points.count),
-                     fetched(points.normals, points.count),
-                     fetched(surface.normals, points.count),
-                     fetched(surface.measured, points.count),
-                     {}};
+  const DepthSurface& surface = slot.body().surface();
+  const std::size_t pixels = slot.pixels();
+  FrameMemory memory{fetched(surface.normals, pixels), fetched(surface.measured, pixels), {}};
   for (int level = 0; level < surface.levels; ++level)
     memory.tiles.push_back(fetched(surface.tiles[level], tile_count(surface, level)));
   return memory;
 }
 
-FrameMemory memory_of(const PreparedCloud& cloud) {
-  const DepthSurface surface = cloud.depth_surface();
-  const std::vector<std::uint32_t>& begin = cloud.pixel_begin();
-  const std::size_t pixels = begin.size() - 1;
-  const float nowhere = std::nanf("");
-  FrameMemory memory{std::vector<Vec3f>(pixels, {nowhere, nowhere, nowhere}),
-                     std::vector<Vec3f>(pixels),
-                     {surface.normals, surface.normals + pixels},
+FrameMemory memory_of(const PreparedImage& image) {
+  const DepthSurface surface = image.surface();
+  const std::size_t pixels = image.pixel_begin().size() - 1;
+  FrameMemory memory{{surface.normals, surface.normals + pixels},
                      {surface.measured, surface.measured + pixels},
                      {}};
-  for (std::size_t p = 0; p < pixels; ++p) {
-    if (begin[p] == begin[p + 1]) continue;
-    memory.positions[p] = cloud.positions()[begin[p]];
-    memory.normals[p] = cloud.normals()[begin[p]];
-  }
   for (int level = 0; level < surface.levels; ++level)
     memory.tiles.emplace_back(surface.tiles[level],
                               surface.tiles[level] + tile_count(surface, level));
@@ -64,13 +50,8 @@ FrameMemory memory_of(const PreparedCloud& cloud) {
 }
 
 bool same_bits(const FrameMemory& a, const FrameMemory& b) {
-  bool same = a.positions.size() == b.positions.size() && a.tiles.size() == b.tiles.size() &&
-              same_bytes(a.normals, b.normals) && same_bytes(a.pixel_normals, b.pixel_normals) &&
+  bool same = a.tiles.size() == b.tiles.size() && same_bytes(a.normals, b.normals) &&
               same_bytes(a.measured, b.measured);
-  for (std::size_t p = 0; same && p < a.positions.size(); ++p) {
-    const Vec3f &x = a.positions[p], &y = b.positions[p];
-    same = (std::isnan(x.x) && std::isnan(y.x)) || std::memcmp(&x, &y, sizeof x) == 0;
-  }
   for (std::size_t level = 0; same && level < a.tiles.size(); ++level)
     same = same_bytes(a.tiles[level], b.tiles[level]);
   return same;

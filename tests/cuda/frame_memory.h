@@ -9,17 +9,17 @@
 namespace vpm::testing {
 
 struct FrameMemory {
-  std::vector<Vec3f> positions, normals, pixel_normals;  // per pixel; positions NaN without a point
+  std::vector<Vec3f> normals;  // per pixel, camera axes
   std::vector<float> measured;
   std::vector<std::vector<InverseDepthRange>> tiles;
 };
 
 // Returns nothing if the frame's cloud is not made on the device.
-std::optional<FrameMemory> memory_on_device(const DepthFrame& frame);
+std::optional<FrameMemory> memory_on_device(const DepthBody& frame);
 // Returns the data that the frame should have.
-FrameMemory memory_of(const PreparedCloud& cloud);
+FrameMemory memory_of(const PreparedImage& image);
 
-// True if all bytes are the same, NaNs being equal.
+// True if all bytes are the same.
 bool same_bits(const FrameMemory& a, const FrameMemory& b);
 
 }  // namespace vpm::testing

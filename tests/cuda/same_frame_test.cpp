@@ -79,13 +79,12 @@ DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& norma
           kDevice};
 }
 
-PreparedCloud prepared(const DepthImage& image, const DepthFrameOptions& options,
-                       const Pose& camera) {
-  return PreparedCloud(
+DepthBody prepared(const DepthImage& image, const DepthFrameOptions& options, const Pose& camera) {
+  return DepthBody(
       make_cloud(image, {options.intrinsics, image.width, image.height, camera}, options.normals));
 }
 
-DepthFrame frame_of(DepthFrames& frames, const DepthImage& image, const Pose& camera) {
+DepthBody frame_of(DepthFrames& frames, const DepthImage& image, const Pose& camera) {
   std::memcpy(frames.metres().data(), image.depth.data(), image.depth.size() * sizeof(float));
   return frames.prepare(camera);
 }
@@ -94,12 +93,12 @@ void expect_same(const DepthImage& image, const NormalOptions& normals) {
   const DepthFrameOptions options = options_of(image, normals);
   DepthFrames frames(options);
   for (const Pose& camera : {Pose{}, kFarPose}) {
-    const DepthFrame frame = frame_of(frames, image, camera);
+    const DepthBody frame = frame_of(frames, image, camera);
     const auto memory = testing::memory_on_device(frame);
     ASSERT_TRUE(memory);
-    const PreparedCloud cloud = prepared(image, options, camera);
-    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
-    EXPECT_EQ(frame.points(), cloud.positions().size());
+    const DepthBody cloud = prepared(image, options, camera);
+    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud.prepared())));
+    EXPECT_EQ(frame.points(), cloud.points());
   }
 }
 
@@ -136,7 +135,7 @@ TEST_P(SameFrame, AsMeasured) {
     const Camera camera{options.intrinsics, image.width, image.height, kFarPose};
     EXPECT_TRUE(testing::same_bits(
         *memory, testing::memory_of(
-                     PreparedCloud(make_cloud(image, camera, options.normals), Denoising::off))));
+                     PreparedImage(make_cloud(image, camera, options.normals), Denoising::off))));
   }
 }
 
@@ -164,11 +163,11 @@ TEST_P(SameFrame, OfCounts) {
       counts[i] = static_cast<std::uint16_t>(seen.depth[i] * 5000);
       image.depth[i] = depth_in_metres(counts[i], counts_per_metre);
     }
-    const DepthFrame frame = frames.prepare(kFarPose);
+    const DepthBody frame = frames.prepare(kFarPose);
     const auto memory = testing::memory_on_device(frame);
     ASSERT_TRUE(memory);
-    const PreparedCloud cloud = prepared(image, options, kFarPose);
-    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
+    const DepthBody cloud = prepared(image, options, kFarPose);
+    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud.prepared())));
   }
 }
 
@@ -198,7 +197,7 @@ TEST_P(SameFrame, OrTheSameRefusal) {
         Result at_host, at_device;
         const Pose pose{testing::generic_rotation(), {0, 0, 0.9}};
         try {
-          const PreparedCloud cloud = prepared(image, options, {});
+          const DepthBody cloud = prepared(image, options, {});
           at_host = ToolQuery(tool, {}).run(cloud, pose);
         } catch (const Error& fault) {
           expected = fault.what();
@@ -234,10 +233,10 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   options.device = kDevice;
   ToolQuery first(tool, options), second(tool, options);
   std::uint32_t boundary = 0;
-  DepthFrame frame = frame_of(frames, images[0], camera.to_world);
+  DepthBody frame = frame_of(frames, images[0], camera.to_world);
   for (int k = 0; k < testing::effort(12); ++k) {
-    const DepthFrame next = frame_of(frames, images[(k + 1) % 4], camera.to_world);
-    const PreparedCloud cloud(make_cloud(images[k % 4], camera, {}));
+    const DepthBody next = frame_of(frames, images[(k + 1) % 4], camera.to_world);
+    const DepthBody cloud(make_cloud(images[k % 4], camera, {}));
     const Result expected = on_cpu.run(cloud, pose_of(k));
     boundary += expected.boundary;
     std::thread other([&, frame] { expect_equal(expected, second.run(frame, pose_of(k))); });
@@ -247,7 +246,7 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
     first.run(frame, jobs_of(poses), results);
     expect_equal(expected, results[1]);
     other.join();
-    EXPECT_EQ(frame.points(), cloud.positions().size());
+    EXPECT_EQ(frame.points(), cloud.points());
     frame = next;
   }
   EXPECT_GE(boundary, testing::expected_of(100));
@@ -264,16 +263,16 @@ TEST_P(SameFrame, EachImageAnew) {
   const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.9}};
-  ToolQuery on_cpu(tool, {.counts_points = false});
+  ToolQuery on_cpu(tool, {});
   std::vector<Result> expected;
   for (int k = 0; k < 6; ++k)
     expected.push_back(
         on_cpu.run(prepared(images[k % 3], options, cameras[k % 2]), cameras[k % 2] * pose));
-  ToolQuery query(tool, {.device = kDevice, .counts_points = false});
+  ToolQuery query(tool, {.device = kDevice});
   DepthFrames frames(options);
   for (int k = 0; k < testing::effort(120); ++k) {
     SCOPED_TRACE(k);
-    const DepthFrame frame = frame_of(frames, images[k % 3], cameras[k % 2]);
+    const DepthBody frame = frame_of(frames, images[k % 3], cameras[k % 2]);
     expect_equal(expected[k % 6], query.run(frame, cameras[k % 2] * pose));
   }
   EXPECT_NE(expected[0].volume, expected[1].volume);
@@ -286,8 +285,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0, 0, 0.8}};
   const ToolModel tool = testing::lattice_cube(0.3, 9, 3);
-  ToolQuery on_cpu(tool, {.counts_points = false}),
-      query(tool, {.device = kDevice, .counts_points = false});
+  ToolQuery on_cpu(tool, {}), query(tool, {.device = kDevice});
   Result expected[2];
   for (int k = 0; k < 2; ++k)
     expected[k] = on_cpu.run(prepared(image, options, cameras[k]), cameras[k] * pose);
@@ -296,7 +294,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   frame_of(frames, image, cameras[0]);
   for (int round = 0; round < 20; ++round) {
     frames.prepare(cameras[0]).points();
-    const DepthFrame frame = frames.prepare(cameras[1]);
+    const DepthBody frame = frames.prepare(cameras[1]);
     expect_equal(expected[1], query.run(frame, cameras[1] * pose));
   }
 }
@@ -318,9 +316,9 @@ TEST(FramesOnDevice, SmallQuery) {
   options.device = kDevice;
   ToolQuery query(tool, options);
   DepthFrames frames(options_of(image, {}));
-  const DepthFrame frame = frame_of(frames, image, {});
+  const DepthBody frame = frame_of(frames, image, {});
   const Pose pose{testing::generic_rotation(), {0, 0, 0.95}};
-  const Result expected = ToolQuery(tool, {}).run(frame.cloud(), pose);
+  const Result expected = ToolQuery(tool, {}).run(DepthBody(frame.prepared()), pose);
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
 }

@@ -7,6 +7,7 @@
 #include <deque>
 #include <set>
 
+#include "libvpm/cloud/normals.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/cuda/effort.h"
@@ -41,7 +42,7 @@ std::vector<Pose> poses_of(int count) {
 }
 
 // Compares a batch with results that repeat for further poses.
-void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
+void expect_same_batch(ToolQuery& query, const AnyBody& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
   std::vector<Result> batch(poses.size());
   query.run(cloud, jobs_of(poses), batch);
@@ -51,12 +52,11 @@ void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::
   }
 }
 
-using SceneCase = std::tuple<const char*, bool, Measure>;  // scene, with camera, measure
+using SceneCase = std::tuple<const char*, bool>;  // scene, with camera
 
 std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
-  const auto& [scene, camera, measure] = tested.param;
-  return test::test_name(scene) + (camera ? "_camera" : "_points") +
-         (measure == Measure::paper ? "_paper" : "_refined");
+  const auto& [scene, camera] = tested.param;
+  return test::test_name(scene) + (camera ? "_camera" : "_points");
 }
 
 class SameQuery : public ::testing::TestWithParam<SceneCase> {
@@ -67,21 +67,17 @@ class SameQuery : public ::testing::TestWithParam<SceneCase> {
 };
 
 TEST_P(SameQuery, OnCpuAndDevice) {
-  const auto& [scene, camera, measure] = GetParam();
+  const auto& [scene, camera] = GetParam();
   constexpr int kPoses = testing::effort(48);
   const Cloud seen = testing::see(synthetic::make_scene(scene));
-  const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  const AnyBody cloud(camera ? seen : without_camera(seen));
   std::uint32_t boundary = 0, inside = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
                                 testing::lattice_cube(0.25, 20, 1)}) {
     QueryOptions options;
-    options.measure = measure;
-    options.counts_points = true;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery on_device(tool, options);
-    options.counts_points = false;
-    ToolQuery without_points(tool, options);
     std::vector<Pose> poses;
     std::vector<Result> expected;
     for (int k = 0; k < kPoses; ++k) {
@@ -93,9 +89,6 @@ TEST_P(SameQuery, OnCpuAndDevice) {
       expect_equal(expected.back(), on_device.run(cloud, poses.back()));
       const auto states = on_cpu.states(), states_there = on_device.states();
       EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
-      Result uncounted = expected.back();
-      if (measure == Measure::refined) uncounted.points.reset();
-      expect_equal(uncounted, without_points.run(cloud, poses.back()));
     }
     // Asks for more than a device takes at once, so that memory is used again.
     for (int k = kPoses; k < testing::effort(16 * 48); ++k) poses.push_back(poses[k % kPoses]);
@@ -108,8 +101,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                          ::testing::Combine(::testing::Values("wall", "groove", "block", "plate",
                                                               "inverted-ball", "step"),
-                                            ::testing::Bool(),
-                                            ::testing::Values(Measure::refined, Measure::paper)),
+                                            ::testing::Bool()),
                          name_of);
 
 // Looks from 3 m, where single pixels show past a small cell that lies behind their mean plane.
@@ -118,26 +110,24 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   synthetic::Scene scene = synthetic::make_scene("wall");
   scene.camera.to_world.translation.z = -2;
   const DepthImage depth = synthetic::render_with_kinect_noise(*scene.surface, scene.camera, 1);
-  const PreparedCloud cloud(make_cloud(depth, scene.camera, NormalOptions{}));
+  const AnyBody cloud(make_cloud(depth, scene.camera, NormalOptions{}));
   constexpr int kPoses = testing::effort(192);
   std::vector<Pose> poses = poses_of(kPoses);
   for (int k = 0; k < kPoses; ++k) poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
   for (const ToolModel& tool :
        {testing::lattice_cube(0.02, 20, 1), testing::lattice_cube(0.03, 20, 1),
         testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)}) {
-    for (const bool counts_points : {true, false}) {
-      QueryOptions options{.counts_points = counts_points};
-      ToolQuery on_cpu(tool, options);
-      options.device = {Device::Kind::cuda, 0};
-      ToolQuery on_device(tool, options);
-      std::vector<Result> expected;
-      for (const Pose& pose : poses) {
-        expected.push_back(on_cpu.run(cloud, pose));
-        SCOPED_TRACE(expected.size());
-        expect_equal(expected.back(), on_device.run(cloud, pose));
-      }
-      expect_same_batch(on_device, cloud, poses, expected);
+    QueryOptions options;
+    ToolQuery on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    ToolQuery on_device(tool, options);
+    std::vector<Result> expected;
+    for (const Pose& pose : poses) {
+      expected.push_back(on_cpu.run(cloud, pose));
+      SCOPED_TRACE(expected.size());
+      expect_equal(expected.back(), on_device.run(cloud, pose));
     }
+    expect_same_batch(on_device, cloud, poses, expected);
   }
 }
 
@@ -145,67 +135,19 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
 TEST(ImagesAndPoints, GiveTheSameByTurns) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
-  const PreparedCloud image(seen), points(without_camera(seen));
+  const AnyBody image(seen), points(without_camera(seen));
   for (const ToolModel& tool :
        {testing::lattice_cube(0.3, 6, 3), testing::lattice_cube(0.25, 20, 1)}) {
-    QueryOptions options{.counts_points = true};
+    QueryOptions options;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery on_device(tool, options);
     for (int k = 0; k < testing::effort(64); ++k) {
       SCOPED_TRACE(k);
-      const PreparedCloud& cloud = k % 3 == 0 ? points : image;
+      const AnyBody& cloud = k % 3 == 0 ? points : image;
       expect_equal(on_cpu.run(cloud, pose_of(k)), on_device.run(cloud, pose_of(k)));
     }
   }
-}
-
-// Returns a lattice whose middle sphere has all others as neighbours, as large spheres do.
-ToolModel lattice_with_hub(std::uint32_t n) {
-  ToolModel tool = testing::lattice_cube(0.3, n, 1);
-  const std::uint32_t count = n * n * n, hub = count / 2;
-  SphereGraph joined{{0}, {}};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const SphereGraph& graph = tool.levels[0].graph;
-    std::set<std::uint32_t> neighbors(graph.neighbors.begin() + graph.begin[i],
-                                      graph.neighbors.begin() + graph.begin[i + 1]);
-    if (i != hub) neighbors.insert(hub);
-    for (std::uint32_t j = 0; i == hub && j < count; ++j)
-      if (j != hub) neighbors.insert(j);
-    joined.neighbors.insert(joined.neighbors.end(), neighbors.begin(), neighbors.end());
-    joined.begin.push_back(static_cast<std::uint32_t>(joined.neighbors.size()));
-  }
-  tool.levels[0].graph = joined;
-  return tool;
-}
-
-// Moves the tool through the wall, so that the hub is cut and reached by the flood.
-void expect_same_at_hub(std::uint32_t n) {
-  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  constexpr int kPoses = testing::kIsEmulated ? 4 : 16;
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_with_hub(n);
-  QueryOptions options;
-  options.measure = Measure::paper;
-  ToolQuery on_cpu(tool, options);
-  options.device = {Device::Kind::cuda, 0};
-  ToolQuery on_device(tool, options);
-  std::vector<Pose> poses(kPoses);
-  std::vector<Result> expected(kPoses), batch(kPoses);
-  int cut = 0, reached = 0;
-  for (int k = 0; k < kPoses; ++k) {
-    SCOPED_TRACE(k);
-    poses[k] = {testing::generic_rotation(), {0, 0, 0.9 + 0.2 / kPoses * k}};
-    expected[k] = on_cpu.run(cloud, poses[k]);
-    const SphereState hub = on_cpu.states()[n * n * n / 2];
-    cut += hub == SphereState::boundary;
-    reached += hub == SphereState::inside;
-    expect_equal(expected[k], on_device.run(cloud, poses[k]));
-  }
-  on_device.run(cloud, jobs_of(poses), batch);
-  for (int k = 0; k < kPoses; ++k) expect_equal(expected[k], batch[k]);
-  EXPECT_GT(cut, 0);
-  EXPECT_GT(reached, 0);
 }
 
 // Expects the bytes of the CPU's replay.
@@ -214,12 +156,14 @@ TEST(ReplayOnDevice, GivesTheSameBytes) {
   EXPECT_TRUE(testing::replay() == testing::replay({Device::Kind::cuda, 0}));
 }
 
-TEST(HubOnDevice, GivesTheSame) {
-  expect_same_at_hub(19);
-}
-
-TEST(SmallQueryOnDevice, GivesTheSameAtAHub) {
-  expect_same_at_hub(5);
+// The measure as printed is the CPU's.
+TEST(PaperMeasure, IsRefusedOnADevice) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const ToolModel tool = testing::lattice_cube(0.2, 3, 1);
+  EXPECT_EQ(test::kind_of_fault([&] {
+              ToolQuery(tool, {.measure = Measure::paper, .device = {Device::Kind::cuda, 0}});
+            }),
+            ErrorKind::invalid_argument);
 }
 
 // Gives up a query, its cloud and its tool right after each answer, while the kernel that sent it
@@ -230,7 +174,7 @@ TEST(SmallQueryOnDevice, MayBeGivenUpAtOnce) {
   for (int k = 0; k < 60; ++k) {
     const ToolModel tool = testing::lattice_cube(0.05, 2, 1);
     ToolQuery query(tool, {.device = {Device::Kind::cuda, 0}});
-    const PreparedCloud cloud(seen);
+    const AnyBody cloud(seen);
     EXPECT_GE(query.run(cloud, pose_of(k)).volume, 0);
   }
 }
@@ -241,13 +185,9 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
-  for (const auto& [camera, measure] :
-       {std::pair(true, Measure::refined), std::pair(false, Measure::refined),
-        std::pair(true, Measure::paper), std::pair(false, Measure::paper)}) {
-    const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  for (const bool camera : {true, false}) {
+    const AnyBody cloud(camera ? seen : without_camera(seen));
     QueryOptions options;
-    options.measure = measure;
-    options.counts_points = true;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery on_device(tool, options);
@@ -268,34 +208,30 @@ TEST(RoundedPosesOnDevice, GiveTheSame) {
   const Cloud seen = testing::see(synthetic::make_scene("step"));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
   for (const bool camera : {true, false}) {
-    const PreparedCloud cloud(camera ? seen : without_camera(seen));
-    for (const Measure measure : {Measure::refined, Measure::paper}) {
-      ToolQuery on_cpu(tool, {.measure = measure}),
-          on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
-      std::vector<Pose> poses;
-      std::vector<Result> expected;
-      for (int k = 0; k < testing::effort(60); ++k) {
-        SCOPED_TRACE(k);
-        Pose pose = pose_of(k);
-        for (Vec3* row : {&pose.rotation.row0, &pose.rotation.row1, &pose.rotation.row2})
-          *row = widen(narrow(*row));
-        poses.push_back(pose);
-        expected.push_back(on_cpu.run(cloud, pose));
-        expect_equal(expected.back(), on_device.run(cloud, pose));
-      }
-      expect_same_batch(on_device, cloud, poses, expected);
+    const AnyBody cloud(camera ? seen : without_camera(seen));
+    ToolQuery on_cpu(tool, {}), on_device(tool, {.device = {Device::Kind::cuda, 0}});
+    std::vector<Pose> poses;
+    std::vector<Result> expected;
+    for (int k = 0; k < testing::effort(60); ++k) {
+      SCOPED_TRACE(k);
+      Pose pose = pose_of(k);
+      for (Vec3* row : {&pose.rotation.row0, &pose.rotation.row1, &pose.rotation.row2})
+        *row = widen(narrow(*row));
+      poses.push_back(pose);
+      expected.push_back(on_cpu.run(cloud, pose));
+      expect_equal(expected.back(), on_device.run(cloud, pose));
     }
+    expect_same_batch(on_device, cloud, poses, expected);
   }
 }
 
 TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("block")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("block")));
   int hidden = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.1, 4, 6),
                                 testing::lattice_cube(0.25, 20, 1)}) {
     QueryOptions options;
-    options.counts_points = false;
     ToolQuery near(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery near_on_device(tool, options);
@@ -322,7 +258,7 @@ TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
 }
 
 // Alternates small and large tools, more than one launch takes, and one without a pose.
-class ToolsTogether : public ::testing::TestWithParam<std::tuple<bool, Measure>> {
+class ToolsTogether : public ::testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
     if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
@@ -330,9 +266,9 @@ class ToolsTogether : public ::testing::TestWithParam<std::tuple<bool, Measure>>
 };
 
 TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
-  const auto [camera, measure] = GetParam();
+  const bool camera = GetParam();
   const Cloud seen = testing::see(synthetic::make_scene("step"));
-  const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  const AnyBody cloud(camera ? seen : without_camera(seen));
   constexpr std::uint32_t kTools = 19;
   std::deque<ToolModel> tools;
   std::deque<ToolQuery> on_cpu, on_device;
@@ -340,7 +276,7 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
   for (std::uint32_t t = 0; t < kTools; ++t) {
     const std::uint32_t side = 2 + 5 * t % 12;
     tools.push_back(testing::lattice_cube(0.15 + 0.01 * t, side, side < 6 ? 4 : 1));
-    QueryOptions options{.measure = measure, .counts_points = true};
+    QueryOptions options;
     on_cpu.emplace_back(tools.back(), options);
     options.device = {Device::Kind::cuda, 0};
     on_device.emplace_back(tools.back(), options);
@@ -379,19 +315,14 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether,
-                         ::testing::Combine(::testing::Bool(),
-                                            ::testing::Values(Measure::refined, Measure::paper)),
-                         [](const auto& tested) {
-                           return std::string(std::get<0>(tested.param) ? "camera" : "points") +
-                                  (std::get<1>(tested.param) == Measure::paper ? "_paper"
-                                                                               : "_refined");
-                         });
+INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether, ::testing::Bool(), [](const auto& tested) {
+  return std::string(tested.param ? "camera" : "points");
+});
 
 // Is small enough for compute-sanitizer.
 TEST(ToolsTogetherSmall, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   std::deque<ToolModel> tools;
   std::deque<ToolQuery> queries;
   std::vector<ToolQuery*> together;
@@ -411,17 +342,15 @@ TEST(ToolsTogetherSmall, SmallQuery) {
 // Leaves little free memory, as other programs do: batches are cut, not refused.
 TEST(TakenDevice, AnswersABatch) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.25, 20, 4);
   const std::vector<Pose> poses = poses_of(96);
-  for (const Measure measure : {Measure::refined, Measure::paper}) {
-    std::vector<Result> expected(poses.size());
-    ToolQuery(tool, {.measure = measure}).run(cloud, jobs_of(poses), expected);
-    ToolQuery on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
-    expect_equal(expected[0], on_device.run(cloud, poses[0]));
-    const testing::TakenMemory others(std::size_t{256} << 20);
-    expect_same_batch(on_device, cloud, poses, expected);
-  }
+  std::vector<Result> expected(poses.size());
+  ToolQuery(tool, {}).run(cloud, jobs_of(poses), expected);
+  ToolQuery on_device(tool, {.device = {Device::Kind::cuda, 0}});
+  expect_equal(expected[0], on_device.run(cloud, poses[0]));
+  const testing::TakenMemory others(std::size_t{256} << 20);
+  expect_same_batch(on_device, cloud, poses, expected);
 }
 
 TEST(TakenDevice, HasRoomForFewerTeams) {
@@ -434,39 +363,30 @@ TEST(TakenDevice, HasRoomForFewerTeams) {
 // Asks for more poses than one device takes at once.
 TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
   if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
   const std::vector<Pose> poses = poses_of(40000);
-  for (const Measure measure : {Measure::refined, Measure::paper}) {
-    QueryOptions options;
-    options.measure = measure;
-    std::vector<Result> of_one(poses.size()), of_all(poses.size());
-    options.device = {Device::Kind::cuda, 0};
-    ToolQuery(tool, options).run(cloud, jobs_of(poses), of_one);
-    options.device.index = Device::kAll;
-    ToolQuery on_all(tool, options);
-    on_all.run(cloud, jobs_of(poses), of_all);
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      SCOPED_TRACE(k);
-      expect_equal(of_one[k], of_all[k]);
-    }
-    expect_equal(of_one[7], on_all.run(cloud, poses[7]));
+  QueryOptions options;
+  std::vector<Result> of_one(poses.size()), of_all(poses.size());
+  options.device = {Device::Kind::cuda, 0};
+  ToolQuery(tool, options).run(cloud, jobs_of(poses), of_one);
+  options.device.index = Device::kAll;
+  ToolQuery on_all(tool, options);
+  on_all.run(cloud, jobs_of(poses), of_all);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    SCOPED_TRACE(k);
+    expect_equal(of_one[k], of_all[k]);
   }
+  expect_equal(of_one[7], on_all.run(cloud, poses[7]));
 }
 
 TEST(SameQueryOnDevice, InAnEmptyCloud) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud{Cloud{}};
+  const AnyBody cloud{Cloud{}};
   const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
   QueryOptions options;
   options.device = {Device::Kind::cuda, 0};
-  options.counts_points = true;
-  for (const Measure measure : {Measure::refined, Measure::paper}) {
-    options.measure = measure;
-    Result nothing;
-    nothing.points = 0;
-    expect_equal(nothing, ToolQuery(tool, options).run(cloud, {}));
-  }
+  expect_equal(Result{}, ToolQuery(tool, options).run(cloud, {}));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 
 namespace vpm::fuzz {
 namespace {
@@ -24,24 +24,23 @@ void expect_sound(const Result& result) {
     fail("a fraction of " + std::to_string(result.volume_fraction));
 }
 
-QueryOptions options_of(std::size_t way, bool is_organised) {
+QueryOptions options_of(std::size_t way, bool tells_inside) {
   QueryOptions options;
   options.measure = way == 1 ? Measure::paper : Measure::refined;
-  options.counts_points = way == 2;
-  if (way == 2 && is_organised) options.occluded = OccludedSpace::solid;
+  if (way == 2 && tells_inside) options.occluded = OccludedSpace::solid;
   options.coherent = way == 3;
   return options;
 }
 
 // Asks before the cloud or where its middle is.
-void expect_sound_answers(const ToolModel& tool, const PreparedCloud& cloud, Choice choice) {
+void expect_sound_answers(const ToolModel& tool, const AnyBody& cloud, Choice choice) {
   Pose pose{{}, {0, 0, 1}};
   if (choice.one_of(2) == 1 && !cloud.positions().empty()) {
     const Vec3 middle = cloud.origin() + widen(cloud.positions()[cloud.positions().size() / 2]);
     pose.translation = middle - tool.center_of_mass;
   }
   const std::size_t way = choice.one_of(4);
-  ToolQuery query(tool, options_of(way, cloud.is_organised()));
+  ToolQuery query(tool, options_of(way, cloud.tells_inside()));
   expect_sound(query.run(cloud, pose));
   if (way == 3) expect_sound(query.run(cloud, pose));
 }
@@ -55,12 +54,12 @@ void expect_sound_answers(const Cloud& cloud, Choice choice) {
     const Camera& camera = cloud.sensor->camera;
     if (std::size_t{camera.width} * camera.height > kMostPixels) return;
   }
-  const PreparedCloud prepared(cloud, choice.one_of(2) == 0 ? Denoising::on : Denoising::off);
+  const AnyBody prepared(cloud, choice.one_of(2) == 0 ? Denoising::on : Denoising::off);
   expect_sound_answers(cube, prepared, choice);
 }
 
 void expect_sound_answers(const ToolModel& tool, Choice choice) {
-  static const PreparedCloud wall(read_cloud(kGolden + "wall.vpmc")),
+  static const AnyBody wall(read_cloud(kGolden + "wall.vpmc")),
       scattered(read_cloud(kGolden + "scattered.vpmc"));
   expect_sound_answers(tool, choice.one_of(2) == 0 ? wall : scattered, choice);
 }

@@ -182,7 +182,7 @@ TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {
   const ToolModel tool = testing::lattice_cube(kEdge, 6, 4);
   EXPECT_NEAR(radius_of_gyration(tool), kEdge / std::sqrt(6), 1e-3);
   const synthetic::Scene scene = synthetic::make_scene("wall");
-  const PreparedCloud cloud(testing::see(scene));
+  const AnyBody cloud(testing::see(scene));
   QueryOptions options;
   options.stiffness = kPerVolume;
   ToolQuery query(tool, options);
@@ -211,7 +211,7 @@ class WorkedExample {
   explicit WorkedExample(double damping)
       : coupling_{500, damping, critical_mass(500, damping), kEdge / std::sqrt(6), 1000} {
     const ToolModel tool = testing::lattice_cube(kEdge, 6, 10);
-    const PreparedCloud wall(testing::see(synthetic::make_scene("wall")));  // at a depth of 1 m
+    const AnyBody wall(testing::see(synthetic::make_scene("wall")));  // at a depth of 1 m
     QueryOptions options;
     options.stiffness = kPerVolume;
     ToolQuery query(tool, options);

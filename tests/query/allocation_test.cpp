@@ -26,10 +26,9 @@ class Allocation : public ::testing::TestWithParam<Case> {
 TEST_P(Allocation, NoneAfterTheFirstQuery) {
   const Case& tested = GetParam();
   const Cloud seen = testing::see(synthetic::make_scene("inverted-ball"));
-  const PreparedCloud cloud(tested.camera ? seen : without_camera(seen));
+  const AnyBody cloud(tested.camera ? seen : without_camera(seen));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
-  ToolQuery query(tool,
-                  {.measure = tested.measure, .coherent = tested.coherent, .counts_points = true});
+  ToolQuery query(tool, {.measure = tested.measure, .coherent = tested.coherent});
   const auto pose = [](int k) {  // moves from free space into contact
     return Pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.015 * k}};
   };

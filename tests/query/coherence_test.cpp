@@ -34,7 +34,7 @@ std::vector<Pose> through_the_wall(double deepest) {
 }
 
 TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
-  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const AnyBody cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
   int near = 0, far = 0;  // poses wholly behind the wall, within the tool radius and beyond
@@ -58,7 +58,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
 }
 
 TEST(CoherentPoses, ForgetWhenTold) {
-  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const AnyBody cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.3);
@@ -72,7 +72,7 @@ TEST(CoherentPoses, ForgetWhenTold) {
 // The tool is free behind an object, further from its front than the tool radius.
 TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
-  const PreparedCloud cloud(see(scene));
+  const AnyBody cloud(see(scene));
   const ToolModel tool = lattice_cube(0.05, 5, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
   for (double x = -0.4; x < 0.4; x += kStep) {
@@ -84,7 +84,7 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
 // Places that count only because an object hides them, near its front, are not remembered when the
 // tool moves away behind the object.
 TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
-  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const AnyBody cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 5, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
   int hidden = 0;
@@ -109,7 +109,7 @@ TEST(CoherentPoses, DoNotRememberWhatAnotherObjectHides) {
   for (std::uint32_t i = 0; i < depth.width * depth.height; ++i)
     depth.depth.push_back(i % depth.width < 80 ? 0.92F : 1.2F);
   const Camera camera{{131.25, 131.25, 79.5, 59.5}, 160, 120, {}};
-  const PreparedCloud cloud(make_cloud(depth, camera, NormalOptions{}));
+  const AnyBody cloud(make_cloud(depth, camera, NormalOptions{}));
   const ToolModel tool = lattice_cube(0.2, 10, 2);
   ToolQuery query(tool, coherent()), alone(tool, {});
   int cut = 0, hidden = 0;
@@ -138,17 +138,16 @@ TEST(CoherentPoses, FollowFramesThatChange) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.4);
-  PreparedCloud cloud(wall_at(1));
+  AnyBody cloud(wall_at(1));
   std::size_t k = 0;
   for (; k < path.size() / 2; ++k) {
-    if (k % 33 == 0)
-      cloud = PreparedCloud(wall_at(1 + 0.01 * std::sin(0.05 * static_cast<double>(k))));
+    if (k % 33 == 0) cloud = AnyBody(wall_at(1 + 0.01 * std::sin(0.05 * static_cast<double>(k))));
     query.run(cloud, path[k]);
   }
   EXPECT_NEAR(query.run(cloud, path[k]).volume_fraction, 1, 1e-12);
-  EXPECT_EQ(query.run(PreparedCloud(wall_at(0.4)), path[k]).volume, 0);  // another wall is seen
-  EXPECT_EQ(query.run(cloud, path[k]).volume, 0);                        // and the memory is gone
-  EXPECT_EQ(query.run(PreparedCloud(wall_at(3)), path[k]).volume, 0);
+  EXPECT_EQ(query.run(AnyBody(wall_at(0.4)), path[k]).volume, 0);  // another wall is seen
+  EXPECT_EQ(query.run(cloud, path[k]).volume, 0);                  // and the memory is gone
+  EXPECT_EQ(query.run(AnyBody(wall_at(3)), path[k]).volume, 0);
 }
 
 // Returns the cloud of a small camera at `camera` that sees the plane of this z.
@@ -168,7 +167,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   ToolQuery query(tool, coherent()), alone(tool, {});
   int cut = 0, wholly_behind = 0, lost = 0, k = 0;
   const auto query_frame = [&](double z) {
-    const PreparedCloud cloud(make_frame(z));
+    const AnyBody cloud(make_frame(z));
     for (int n = 0; n < kQueriesPerFrame; ++n, ++k) {
       const Pose pose{generic_rotation(), {0.01 * std::sin(0.03 * k), -0.008, 1}};
       const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
@@ -211,12 +210,12 @@ TEST(CoherentPoses, AreRightWhileTheCameraMoves) {
 // free, or shows nothing; no later frame brings it back.
 TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  const PreparedCloud wall(small_view(1)), far_wall(small_view(2)), hand(small_view(0.4)),
+  const AnyBody wall(small_view(1)), far_wall(small_view(2)), hand(small_view(0.4)),
       nothing(small_view(-1));
   const Pose deep{generic_rotation(), {0, 0, 1.2}};
   ASSERT_GT(wall.positions().size(), 0u);
   ASSERT_EQ(nothing.positions().size(), 0u);
-  for (const PreparedCloud* other : {&far_wall, &hand, &nothing}) {
+  for (const AnyBody* other : {&far_wall, &hand, &nothing}) {
     ToolQuery query(tool, coherent());
     for (double z = 0.85; z < 1.2; z += kStep) query.run(wall, {generic_rotation(), {0, 0, z}});
     ASSERT_NEAR(query.run(wall, deep).volume_fraction, 1, 1e-12);
@@ -231,8 +230,8 @@ TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const Pose pose{generic_rotation(), {0, 0, 1}};
-  EXPECT_EQ(query.run(PreparedCloud(small_view(1.2)), pose).volume, 0);
-  EXPECT_EQ(query.run(PreparedCloud(small_view(0.8)), pose).volume, 0);
+  EXPECT_EQ(query.run(AnyBody(small_view(1.2)), pose).volume, 0);
+  EXPECT_EQ(query.run(AnyBody(small_view(0.8)), pose).volume, 0);
 }
 
 TEST(CoherentPoses, AreRefusedWhereTheyMeanNothing) {

@@ -28,7 +28,7 @@ DepthImage wall() {
 }
 
 Result query_in(const DepthImage& image, const Pose& camera, const Pose& pose) {
-  const PreparedCloud cloud(make_cloud(image, {kIntrinsics, 80, 60, camera}, {}));
+  const DepthBody cloud(make_cloud(image, {kIntrinsics, 80, 60, camera}, {}));
   return ToolQuery(testing::lattice_cube(0.1, 6, 2), {}).run(cloud, pose);
 }
 
@@ -40,7 +40,7 @@ TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
   ToolQuery query(tool, {});
   DepthFrames frames(options_of());
   std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
-  const DepthFrame frame = frames.prepare({});
+  const DepthBody frame = frames.prepare({});
   const Result expected = query_in(image, {}, kPose), found = query.run(frame, kPose);
   EXPECT_GT(expected.boundary, 0U);
   testing::expect_equal(expected, found);
@@ -64,8 +64,8 @@ TEST(DepthFrames, AreReadAsMeasuredWhereThatIsAsked) {
     std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
     Result& result = found[points == Denoising::on ? 0 : 1];
     result = ToolQuery(tool, {}).run(frames.prepare({}), kPose);
-    testing::expect_equal(result, ToolQuery(tool, {}).run(
-                                      PreparedCloud(make_cloud(image, camera, {}), points), kPose));
+    testing::expect_equal(
+        result, ToolQuery(tool, {}).run(DepthBody(make_cloud(image, camera, {}), points), kPose));
   }
   EXPECT_NE(found[0].volume, found[1].volume);
 }
@@ -89,18 +89,18 @@ TEST(DepthFrames, StayAsTheyWereWhileOthersCome) {
     std::ranges::fill(frames.metres(), depth);
     return frames.prepare({});
   };
-  const DepthFrame near = prepare(1);
+  const DepthBody near = prepare(1);
   for (int k = 0; k < 4; ++k) {
-    const DepthFrame far = prepare(2);
-    EXPECT_EQ(near.cloud().positions().front().z, 1);
-    EXPECT_EQ(far.cloud().positions().front().z, 2);
+    const DepthBody far = prepare(2);
+    EXPECT_EQ(near.prepared().positions().front().z, 1);
+    EXPECT_EQ(far.prepared().positions().front().z, 2);
   }
 }
 
 TEST(DepthFrames, TakeTheMemoryOfThoseThatNobodyHolds) {
   DepthFrames frames(options_of());
   const float* const first = frames.metres().data();
-  std::optional<DepthFrame> held = frames.prepare({});
+  std::optional<DepthBody> held = frames.prepare({});
   const float* const second = frames.metres().data();
   EXPECT_NE(first, second);
   held = frames.prepare({});

@@ -8,7 +8,7 @@
 #include "libvpm/backend/cell_clusters.h"
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/cloud/normals.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
@@ -119,8 +119,8 @@ class DepthReadings : public ::testing::TestWithParam<const char*> {
     surface_.normals = normals_.data();
   }
 
-  PreparedCloud cloud_{rough_cloud(GetParam())};
-  DepthSurface surface_ = cloud_.depth_surface();
+  DepthBody cloud_{rough_cloud(GetParam())};
+  DepthSurface surface_ = cloud_.surface();
   std::vector<Vec3f> normals_ = std::vector<Vec3f>(
       surface_.normals, surface_.normals + std::ptrdiff_t{surface_.width} * surface_.height);
   Numbers numbers_;

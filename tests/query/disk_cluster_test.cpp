@@ -7,7 +7,7 @@
 
 #include "libvpm/measure/classify.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/points/points_body.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -58,8 +58,8 @@ Cloud noisy_wall(double height, double slope) {
 }
 
 bool sees_plane(const Cloud& cloud, Vec3 center, TangentPlane& plane) {
-  const PreparedCloud prepared(cloud);
-  const DiskSurface disks = prepared.disk_surface();
+  const PointsBody prepared(cloud);
+  const DiskSurface disks = prepared.surface();
   return finds_cluster_plane(disks, disks.classify_ball(center, kReach), center, kReach, HUGE_VAL,
                              SampleInTurn{}, plane);
 }
@@ -127,7 +127,7 @@ TEST(PatchOfPoints, ThereIsNoneBeyondTheRim) {
 // plane.
 TEST(PatchOfPoints, CountsWhatIsBehindANoisyWall) {
   constexpr double kEdge = 0.08;
-  const PreparedCloud prepared(noisy_wall(0.001, 0.1));
+  const PointsBody prepared(noisy_wall(0.001, 0.1));
   const ToolModel tool = testing::lattice_cube(kEdge, 24, 2);
   ToolQuery query(tool, {});
   for (const double depth : {0.01, 0.02, 0.04}) {

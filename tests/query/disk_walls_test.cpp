@@ -6,7 +6,7 @@
 #include <random>
 
 #include "libvpm/query/tool_query.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/points/points_body.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -51,19 +51,20 @@ double angle(Vec3 a, Vec3 b) {
 
 TEST(TwoWallsOfPoints, TheOtherOneIsFoundWhereABodyReachesIt) {
   const TwoWalls roof{true};
-  const PreparedCloud cloud(roof.seen());
-  const DiskSurface disks = cloud.disk_surface();
+  const PointsBody cloud(roof.seen());
+  const DiskSurface disks = cloud.surface();
   for (const double x : {-0.006, -0.001, 0.002, 0.007}) {
     const Vec3 at{x, 0.0007, -0.03};
-    const SurfaceSample on_surface = disks.sample(at - cloud.origin());
+    const SurfaceSample on_surface = disks.sample(at - cloud.to_world().translation);
     const auto finds = [&](double radius, OtherWall& other) {
-      return disks.find_other_wall(at - cloud.origin(), {on_surface.normal, on_surface.foot},
-                                   on_surface.point, radius, kTwoWalls, other);
+      return disks.find_other_wall(at - cloud.to_world().translation,
+                                   {on_surface.normal, on_surface.foot}, on_surface.point, radius,
+                                   kTwoWalls, other);
     };
     OtherWall other;
     ASSERT_TRUE(finds(1.5 * std::fabs(x), other)) << x;
     EXPECT_NEAR(norm(other.normal - roof.normal(x < 0)), 0, 1e-5);
-    EXPECT_NEAR(other.border.distance(at - cloud.origin()), std::fabs(x), 1e-5);
+    EXPECT_NEAR(other.border.distance(at - cloud.to_world().translation), std::fabs(x), 1e-5);
     EXPECT_NEAR(std::fabs(other.border.normal.x), 1, 1e-5);
     EXPECT_FALSE(finds(0.9 * std::fabs(x), other));
   }
@@ -87,10 +88,10 @@ TEST(TwoWallsOfPoints, TheBorderIsThatOfTheWallNotOfItsEnd) {
       if (along < kHeight) add({0, kSpacing * k, -along}, {1, 0, 0});
     }
   }
-  const PreparedCloud cloud(seen);
-  const DiskSurface disks = cloud.disk_surface();
+  const PointsBody cloud(seen);
+  const DiskSurface disks = cloud.surface();
   for (const double depth : {0.037, 0.041, 0.045}) {  // below the top, whose edge is nearer
-    const Vec3 at = Vec3{-depth - 0.002, 0.0007, -depth} - cloud.origin();
+    const Vec3 at = Vec3{-depth - 0.002, 0.0007, -depth} - cloud.to_world().translation;
     const SurfaceSample on_surface = disks.sample(at);
     OtherWall other;
     ASSERT_TRUE(disks.find_other_wall(at, {on_surface.normal, on_surface.foot}, on_surface.point,
@@ -109,10 +110,10 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
       p.z = static_cast<float>(bulge * (x * x + y * y));
       seen.normals[i] = narrow(normalized_or_zero(Vec3{-2 * bulge * x, -2 * bulge * y, 1}));
     }
-    const PreparedCloud cloud(seen);
-    const DiskSurface disks = cloud.disk_surface();
+    const PointsBody cloud(seen);
+    const DiskSurface disks = cloud.surface();
     for (const double depth : {0.005, 0.02, 0.04}) {
-      const Vec3 at = Vec3{0.004, -0.011, -depth} - cloud.origin();
+      const Vec3 at = Vec3{0.004, -0.011, -depth} - cloud.to_world().translation;
       const SurfaceSample on_surface = disks.sample(at);
       OtherWall other;
       EXPECT_FALSE(disks.find_other_wall(at, {on_surface.normal, on_surface.foot}, on_surface.point,
@@ -124,13 +125,14 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
 // Cones of whole nodes, where they suffice, tell which disks face one way.
 TEST(TwoWallsOfPoints, ConesSayWhatEachDiskSays) {
   for (const bool is_roof : {true, false}) {
-    const PreparedCloud cloud(TwoWalls{is_roof}.seen());
-    const DiskSurface disks = cloud.disk_surface();
+    const PointsBody cloud(TwoWalls{is_roof}.seen());
+    const DiskSurface disks = cloud.surface();
     std::mt19937 random(4);
     std::uniform_real_distribution<double> at(-1, 1);
     int one_way = 0, several = 0;
     for (int k = 0; k < 400; ++k) {
-      const Vec3 center = 0.12 * Vec3{at(random), at(random), 0.3 * at(random)} - cloud.origin();
+      const Vec3 center =
+          0.12 * Vec3{at(random), at(random), 0.3 * at(random)} - cloud.to_world().translation;
       const double radius = 0.03 * std::fabs(at(random));
       const auto toward = static_cast<std::uint32_t>(random() % disks.feet.count);
       const Vec3 n = widen(disks.normals[toward]);
@@ -154,8 +156,8 @@ TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
     seen.positions[i].z = static_cast<float>(3 * (p.x * p.x + p.y * p.y));
     seen.normals[i] = narrow(normalized_or_zero(Vec3{-6 * p.x, -6 * p.y, 1}));
   }
-  const PreparedCloud cloud(seen);
-  const DiskSurface disks = cloud.disk_surface();
+  const PointsBody cloud(seen);
+  const DiskSurface disks = cloud.surface();
   const PointTree& tree = disks.feet;
   int held = 0, within = 0;
   for (std::uint32_t nodes = tree.leaves, size = PointTree::kLeafSize; nodes > 0;
@@ -181,13 +183,14 @@ TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
 
 // Samples from a list of near disks equal those from all disks.
 TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
-  const PreparedCloud cloud(TwoWalls{true}.seen());
-  const DiskSurface disks = cloud.disk_surface();
+  const PointsBody cloud(TwoWalls{true}.seen());
+  const DiskSurface disks = cloud.surface();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> at(-1, 1);
   int found = 0;
   for (int k = 0; k < 200; ++k) {
-    const Vec3 middle = Vec3{0.01 * at(random), 0.1 * at(random), -0.02} - cloud.origin();
+    const Vec3 middle =
+        Vec3{0.01 * at(random), 0.1 * at(random), -0.02} - cloud.to_world().translation;
     const DiskSurface::AroundBall near =
         disks.around_ball(middle, 0.008, disks.sample(middle).point);
     const Vec3 x = middle + 0.004 * Vec3{at(random), at(random), at(random)};
@@ -207,11 +210,11 @@ TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
 // A disk seen at a grazing angle may be wide. It changes nothing far from it.
 TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
   Cloud seen = TwoWalls{false}.seen();
-  const PreparedCloud alone(seen);
+  const PointsBody alone(seen);
   seen.positions.push_back({3, 0, 0});
   seen.normals.push_back({0, 0, 1});
   seen.radii.push_back(0.2f);
-  const PreparedCloud with_wide(seen);
+  const PointsBody with_wide(seen);
   const ToolModel cube = testing::lattice_cube(0.06, 3, 4);
   ToolQuery query(cube, {});
   for (int k = 0; k < 40; ++k) {
@@ -230,12 +233,12 @@ TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
 // width of disks.
 TEST(TwoWallsOfPoints, BelowAGrooveTheCreaseIsNearest) {
   const TwoWalls groove{false};
-  const PreparedCloud cloud(groove.seen());
-  const DiskSurface disks = cloud.disk_surface();
+  const PointsBody cloud(groove.seen());
+  const DiskSurface disks = cloud.surface();
   for (const double depth : {0.01, 0.03, 0.06}) {
     for (const double aside : {-1.6, -0.9, -0.4, 0.0, 0.2, 0.7, 1.3}) {
       const Vec3 at{aside * depth, 0.0007, -depth};
-      const Vec3 there = at - cloud.origin();
+      const Vec3 there = at - cloud.to_world().translation;
       const Vec3 direction = disks.closest_normal(there, disks.sample(there));
       EXPECT_LT(angle(direction, groove.gradient(at)), 0.5 * kDegree) << depth << ' ' << aside;
     }
@@ -264,7 +267,7 @@ Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
 TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
   constexpr double kEdge = 0.012;
   const TwoWalls roof{true};
-  const PreparedCloud cloud(roof.seen());
+  const PointsBody cloud(roof.seen());
   const ToolModel piece = testing::lattice_cube(kEdge, 1, 1);
   ToolQuery query(piece, {});
   for (const double x : {-0.001, 0.0, 0.0015}) {
@@ -282,7 +285,7 @@ TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
   ToolQuery query(cube, {});
   for (const bool is_roof : {true, false}) {
     const TwoWalls walls{is_roof};
-    const PreparedCloud cloud(walls.seen());
+    const PointsBody cloud(walls.seen());
     for (const double x : {-0.013, -0.006, 0.004, 0.011}) {
       for (const double z : {-0.012, -0.021}) {
         const Pose pose{{}, {x, 0.0013, is_roof ? z : z + 0.02}};

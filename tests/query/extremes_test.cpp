@@ -33,8 +33,7 @@ Cloud points(std::vector<Vec3f> positions, std::vector<Vec3f> normals, float rad
 Result ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose = {}) {
   QueryOptions options;
   options.measure = measure;
-  options.counts_points = true;
-  return ToolQuery(tool, options).run(PreparedCloud(cloud), pose);
+  return ToolQuery(tool, options).run(AnyBody(cloud), pose);
 }
 
 void expect_sound(const Result& r) {
@@ -48,7 +47,7 @@ TEST(ExtremePoints, NoneTouchesNothing) {
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     const Result r = ask(tool, points({}, {}), measure);
     EXPECT_EQ(r.volume, 0);
-    EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
+    EXPECT_EQ(r.boundary + r.inside + r.points.value_or(0), 0u);
   }
 }
 
@@ -90,7 +89,7 @@ TEST(ExtremePoints, OppositeNormalsCancelTheForceNotTheVolume) {
 
 TEST(ExtremePoints, NormalsThatAreNoneAreRefused) {
   const auto with_normal = [](Vec3f n) {
-    return refusal([&] { PreparedCloud{points({{0, 0, 0}}, {n})}; });
+    return refusal([&] { AnyBody{points({{0, 0, 0}}, {n})}; });
   };
   const float nan = static_cast<float>(kNan);
   for (const Vec3f n : {Vec3f{0, 0, 0}, Vec3f{0, 0, 2}, Vec3f{nan, 0, 1}, Vec3f{0, 0, 1e-30f}})
@@ -100,14 +99,14 @@ TEST(ExtremePoints, NormalsThatAreNoneAreRefused) {
 
 TEST(ExtremePoints, MoreThanCanBeCountedAreRefused) {
   Cloud cloud;
-  cloud.positions.resize(PreparedCloud::kMaxPoints + 1);
-  EXPECT_NE(refusal([&] { PreparedCloud{cloud}; }).find("at most 16777216"), std::string::npos);
+  cloud.positions.resize(kMaxPoints + 1);
+  EXPECT_NE(refusal([&] { AnyBody{cloud}; }).find("at most 16777216"), std::string::npos);
 }
 
 TEST(ExtremePoints, AFarOriginIsRefused) {
   Cloud cloud = points({{0, 0, 0}}, {{0, 0, 1}});
   cloud.origin = {0, 1e31, 0};
-  EXPECT_NE(refusal([&] { PreparedCloud{cloud}; }).find("2^100 m"), std::string::npos);
+  EXPECT_NE(refusal([&] { AnyBody{cloud}; }).find("2^100 m"), std::string::npos);
 }
 
 TEST(ExtremePoses, FarAwayNothingIsTouched) {
@@ -125,7 +124,7 @@ TEST(ExtremePoses, FarAwayNothingIsTouched) {
 
 TEST(ExtremePoses, WhatIsNoRigidMotionIsRefused) {
   const ToolModel tool = lattice_cube(0.2, 2, 1);
-  const PreparedCloud cloud(points({{0, 0, 0}}, {{0, 0, 1}}));
+  const AnyBody cloud(points({{0, 0, 0}}, {{0, 0, 1}}));
   const Rotation mirror{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, zero{{}, {}, {}};
   const Rotation stretched{{1.1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Rotation not_finite{{kNan, 0, 0}, {0, 1, 0}, {0, 0, 1}};

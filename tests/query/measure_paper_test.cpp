@@ -24,7 +24,7 @@ Cloud points(std::vector<Vec3f> positions, Vec3f normal) {
 Result paper(const ToolModel& tool, const Cloud& cloud, const Pose& pose = {}) {
   QueryOptions options;
   options.measure = Measure::paper;
-  return ToolQuery(tool, options).run(PreparedCloud(cloud), pose);
+  return ToolQuery(tool, options).run(AnyBody(cloud), pose);
 }
 
 TEST(PaperMeasure, OnePointInOneSphereGivesItsCap) {

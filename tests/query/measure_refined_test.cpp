@@ -38,7 +38,7 @@ TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
   const SceneCase& c = GetParam();
   const synthetic::Scene scene = synthetic::make_scene(c.scene);
   const Cloud seen = see(scene);
-  const PreparedCloud cloud(c.camera ? seen : without_camera(seen));
+  const AnyBody cloud(c.camera ? seen : without_camera(seen));
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
   ToolQuery query(tool, {});
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
 // A block of a large cell is wider than the step is high.
 TEST(RefinedMeasure, FewLargeCellsDoNotTakeAStepForAPlane) {
   const synthetic::Scene scene = synthetic::make_scene("step");
-  const PreparedCloud cloud(see(scene));
+  const AnyBody cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 2, 8);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
   ToolQuery query(tool, {});
@@ -97,7 +97,7 @@ TEST(RefinedMeasure, FewLargeCellsDoNotTakeAStepForAPlane) {
 // not decide for places near one of them.
 TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
   const synthetic::Scene scene = synthetic::make_scene("groove");
-  const PreparedCloud cloud(see(scene));
+  const AnyBody cloud(see(scene));
   const ToolModel tool = lattice_cube(0.1, 2, 8);
   const synthetic::TrueSolid solid(synthetic::make_cube(0.1));
   ToolQuery query(tool, {});
@@ -119,12 +119,11 @@ TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
 }
 
 TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
-  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const AnyBody cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
-  const Result r =
-      ToolQuery(tool, {.counts_points = true}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
+  const Result r = ToolQuery(tool, {}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
   EXPECT_EQ(r.volume, 0);
-  EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
+  EXPECT_EQ(r.boundary + r.inside, 0u);
   EXPECT_EQ(norm(r.wrench.force), 0);
 }
 
@@ -132,7 +131,7 @@ TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   // The tool is before, beside and far from a free-standing block, also where the block hides the
   // wall behind it.
   const synthetic::Scene scene = synthetic::make_scene("block");
-  const PreparedCloud cloud(see(scene));
+  const AnyBody cloud(see(scene));
   const ToolModel tool = lattice_cube(0.1, 6, 2);
   ToolQuery query(tool, {});
   double before = 0;
@@ -158,7 +157,7 @@ double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, doubl
 // A tool from the side meets a face of the block that the camera cannot see. Where it touches the
 // front, the front supports deeper places.
 TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
-  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const AnyBody cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
   const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
   for (const double z : {0.98, 1.0, 1.18, 1.23}) {
@@ -184,7 +183,7 @@ TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
 TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
   // Half of the tool touches the wall in sight; the block in front hides the other half.
   const synthetic::Scene scene = synthetic::make_scene("block");
-  const PreparedCloud cloud(see(scene));
+  const AnyBody cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 10, 2);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
   ToolQuery query(tool, {});
@@ -200,7 +199,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
 }
 
 TEST(RefinedMeasure, DoesNotJumpWhileAToolInTheWallPassesBehindAnObject) {
-  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const AnyBody cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 2);
   ToolQuery query(tool, {});
   double before = 0;
@@ -219,7 +218,7 @@ TEST(RefinedMeasure, DoesNotJumpWhileAToolInTheWallPassesBehindAnObject) {
 TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   // Into a wall the energy is E(d) = integral of V, so the force must be V along the normal at
   // every pose.
-  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const AnyBody cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 8, 3);
   ToolQuery query(tool, {});
   for (int k = 0; k < 10; ++k) {
@@ -236,7 +235,7 @@ TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
   double sum = 0;
   constexpr int kPoses = 24;
   for (int k = 0; k < kPoses; ++k) {
-    const PreparedCloud cloud(make_cloud(
+    const AnyBody cloud(make_cloud(
         synthetic::render_with_kinect_noise(*scene.surface, scene.camera, static_cast<unsigned>(k)),
         scene.camera, NormalOptions{}));
     const Vec3 force =
@@ -250,9 +249,9 @@ TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
 // surface lies on one of them.
 TEST(RefinedMeasure, PushesFromOneWallBesideACrease) {
   const synthetic::Scene scene = synthetic::make_scene("groove");
-  const PreparedCloud cloud(
+  const DepthBody cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
-  const DepthSurface surface = cloud.depth_surface();
+  const DepthSurface surface = cloud.surface();
   constexpr double kTwoPixels = 0.004;  // m, at the bottom
   constexpr double kWithin = 5;         // degrees; windows that hold both walls err by up to 33
   for (int k = 0; k < 40 * 30; ++k) {
@@ -275,10 +274,10 @@ TEST(RefinedMeasure, FindsTheBottomOfAGrooveUnderNoise) {
   double sum = 0;
   int count = 0;
   for (const unsigned seed : {1u, 101u, 201u}) {
-    const PreparedCloud cloud(
+    const DepthBody cloud(
         make_cloud(synthetic::render_with_kinect_noise(*scene.surface, scene.camera, seed),
                    scene.camera, NormalOptions{}));
-    const DepthSurface surface = cloud.depth_surface();
+    const DepthSurface surface = cloud.surface();
     for (int k = 0; k < 9 * 10 * 20; ++k) {
       const double depth = 0.01 + 0.005 * (k / 20 % 10), aside = 0.1 * (k / 200 - 4) * depth;
       const Vec3 x{aside, -0.1 + 0.01 * (k % 20), 1 + depth};
@@ -314,7 +313,7 @@ TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
   constexpr double kMove = 0.004, kTurn = 0.02;  // metres, radians
   for (const char* name : {"tilted-wall", "inverted-ball", "ball", "groove"}) {
     const synthetic::Scene scene = synthetic::make_scene(name);
-    const PreparedCloud cloud(see(scene));
+    const AnyBody cloud(see(scene));
     const Pose pose{generic_rotation(), {0.012, -0.007, 0.95}};
     const Result r = query.run(cloud, pose);
     ASSERT_GT(r.volume, 0.05 * tool.volume) << name;
@@ -337,11 +336,10 @@ TEST(RefinedMeasure, HolesDoNotLeak) {
   Cloud cloud = see(synthetic::make_scene("wall"));
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
   const Pose pose{generic_rotation(), {0, 0, 0.95}};
-  const double whole = ToolQuery(tool, {}).run(PreparedCloud(cloud), pose).volume;
+  const double whole = ToolQuery(tool, {}).run(AnyBody(cloud), pose).volume;
   for (std::size_t i = 0; i < cloud.sensor->depth.depth.size(); i += 7)
     cloud.sensor->depth.depth[i] = 0;
-  EXPECT_NEAR(ToolQuery(tool, {}).run(PreparedCloud(cloud), pose).volume, whole,
-              1e-4 * tool.volume);
+  EXPECT_NEAR(ToolQuery(tool, {}).run(AnyBody(cloud), pose).volume, whole, 1e-4 * tool.volume);
 }
 
 }  // namespace

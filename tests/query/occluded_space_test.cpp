@@ -38,7 +38,7 @@ double part_behind_what_is_seen(const std::vector<Vec3>& places, const Pose& pos
 }
 
 TEST(SolidOccludedSpace, CountAllThatIsBehindTheImage) {
-  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const AnyBody cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
   const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
   ToolQuery query(tool, solid()), near(tool, {});
@@ -58,7 +58,7 @@ TEST(SolidOccludedSpace, CountAllThatIsBehindTheImage) {
 
 // Deep behind the front everything is pushed back to it, or out at the nearest side.
 TEST(SolidOccludedSpace, PushToTheNearestPlaceThatIsSeen) {
-  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const AnyBody cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 6, 3);
   const Result r = ToolQuery(tool, solid()).run(cloud, {generic_rotation(), {0.002, -0.003, 1.09}});
   EXPECT_NEAR(r.volume_fraction, 1, 1e-9);
@@ -68,7 +68,7 @@ TEST(SolidOccludedSpace, PushToTheNearestPlaceThatIsSeen) {
 // Without hidden places the results have the same bits.
 TEST(SolidOccludedSpace, ChangeNothingNearTheSurface) {
   for (const char* scene : {"wall", "groove", "plate", "block"}) {
-    const PreparedCloud cloud(see(synthetic::make_scene(scene)));
+    const AnyBody cloud(see(synthetic::make_scene(scene)));
     const ToolModel tool = lattice_cube(kEdge, 8, 3);
     ToolQuery query(tool, solid()), near(tool, {});
     int contacts = 0;
@@ -83,7 +83,7 @@ TEST(SolidOccludedSpace, ChangeNothingNearTheSurface) {
 }
 
 TEST(SolidOccludedSpace, NeedNoMemoryOfPosesBefore) {
-  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const AnyBody cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
   QueryOptions options = solid();
   ToolQuery alone(tool, options);
@@ -101,7 +101,7 @@ TEST(SolidOccludedSpace, NeedNoMemoryOfPosesBefore) {
 
 TEST(SolidOccludedSpace, AreRefusedWhereTheyMeanNothing) {
   const ToolModel tool = lattice_cube(kEdge, 2, 2);
-  const PreparedCloud cloud(without_camera(see(synthetic::make_scene("wall"))));
+  const AnyBody cloud(without_camera(see(synthetic::make_scene("wall"))));
   ToolQuery query(tool, solid());
   EXPECT_THROW(query.run(cloud, Pose{}), Error);
   std::vector<Result> results(1);

@@ -5,7 +5,7 @@
 
 #include "libvpm/measure/classify.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -17,8 +17,8 @@ constexpr double kReach = 0.015;  // radius of the clusters, m
 
 // Finds the plane of a cluster about a place of the scene, in camera coordinates. Returns false if
 // it is not planar.
-bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
-  const DepthSurface surface = cloud.depth_surface();
+bool plane_at(const DepthBody& cloud, Vec3 center, TangentPlane& plane) {
+  const DepthSurface surface = cloud.surface();
   return finds_cluster_plane(surface, surface.classify_ball(center, kReach), center, kReach,
                              HUGE_VAL, SampleInTurn{}, plane);
 }
@@ -41,7 +41,7 @@ class PatchOnABall : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PatchOnABall, IsAsHighAsTheSurfaceInTheMean) {
   const synthetic::Scene scene = synthetic::make_scene(GetParam());
-  const PreparedCloud cloud(see(scene));
+  const DepthBody cloud(see(scene));
   // Bounds the mean height of a tangent plane.
   constexpr double kSmallestRadius = 0.25, kLargestRadius = 0.3;
   const double sagitta = kReach * kReach / (9 * kLargestRadius);
@@ -70,10 +70,10 @@ INSTANTIATE_TEST_SUITE_P(Balls, PatchOnABall, ::testing::Values("ball", "inverte
 
 TEST(Patch, NoneWhereSeveralSurfacesMeet) {
   TangentPlane plane;
-  const PreparedCloud step(see(synthetic::make_scene("step")));
+  const DepthBody step(see(synthetic::make_scene("step")));
   EXPECT_TRUE(plane_at(step, {0.05, 0, 1}, plane));
   EXPECT_FALSE(plane_at(step, {-0.03, 0, 1}, plane)) << "half wall, half step";
-  const PreparedCloud groove(see(synthetic::make_scene("groove")));
+  const DepthBody groove(see(synthetic::make_scene("groove")));
   EXPECT_TRUE(plane_at(groove, {0.05, 0, 0.95}, plane));
   EXPECT_FALSE(plane_at(groove, {0, 0, 0.997}, plane)) << "the bottom, where both walls are seen";
 }
@@ -83,7 +83,7 @@ TEST(Patch, NoneWhereTheImageHasAHole) {
   const Vec3 middle{0.05, 0.03, 1};
   Cloud cloud = see(scene);
   TangentPlane plane;
-  EXPECT_TRUE(plane_at(PreparedCloud(cloud), middle, plane));
+  EXPECT_TRUE(plane_at(DepthBody(cloud), middle, plane));
   DepthImage& depth = cloud.sensor->depth;
   const auto u = static_cast<std::uint32_t>(scene.camera.intrinsics.fx * middle.x +
                                             scene.camera.intrinsics.cx);
@@ -93,7 +93,7 @@ TEST(Patch, NoneWhereTheImageHasAHole) {
     for (std::uint32_t column = u - 3; column <= u + 3; ++column)
       depth.depth[row * depth.width + column] = 0;
   }
-  EXPECT_FALSE(plane_at(PreparedCloud(cloud), middle, plane));
+  EXPECT_FALSE(plane_at(DepthBody(cloud), middle, plane));
 }
 
 // True if every pixel that a ball may cover shows a surface behind all of it.
@@ -126,7 +126,7 @@ TEST(Patch, CellsThatAreSeenFreeDoNotCount) {
     for (std::uint32_t u = 0; u < depth.width; ++u)
       if (u % kEvery < kPit && v % kEvery < kPit) depth.depth[v * depth.width + u] += kDeep;
   }
-  const PreparedCloud cloud(seen);
+  const DepthBody cloud(seen);
   const ToolModel tool = testing::lattice_cube(0.2, 24, 2);
   ToolQuery query(tool, {});
   int free = 0;

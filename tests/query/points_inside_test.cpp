@@ -6,6 +6,7 @@
 #include <random>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/scene/points/prepared_points.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -20,9 +21,11 @@ Rotation random_rotation(std::mt19937_64& random) {
 
 // Rounding decides about a point that lies on the sphere; searches must leave that decision to the
 // exact test.
-TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
-  const Sphere sphere{{2, 1, 7}, 5};
-  const Vec3 on_sphere{5, 5, 7};
+TEST(PointsInside, AreThoseThatTheExactTestTakes) {
+  const ToolModel tool = testing::lattice_cube(10, 1, 1);
+  const Sphere sphere = tool.spheres[0];
+  const Vec3 on_sphere{3, 4, 0};
+  ASSERT_EQ(sphere.radius, 5);
   Cloud points;
   const Vec3f place{0.5F, -0.25F, 2};
   points.positions = {place};
@@ -30,19 +33,23 @@ TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
     points.positions.push_back({1000 + static_cast<float>(k % 20), static_cast<float>(k / 20), 0});
   points.normals.assign(points.positions.size(), {0, 0, -1});
   points.radii.assign(points.positions.size(), 0.01F);
-  const PreparedCloud cloud(points, Denoising::off);
+  const PreparedPoints cloud(points, Denoising::off);
   std::mt19937_64 random(1);
-  int inside = 0;
+  PointRanges ranges;
+  std::uint32_t inside = 0;
   for (int k = 0; k < 20000; ++k) {
     const Rotation rotation = random_rotation(random);
     const Pose pose{rotation, widen(place) - rotation * on_sphere};
     const bool expected =
         strictly_inside(sphere, relative_to(pose, {{}, cloud.origin()}) * widen(place));
-    ASSERT_EQ(PointsOfSphere(cloud, pose).count(sphere, DiskSurface::BallClass{}), expected) << k;
+    ASSERT_EQ(for_points_inside(cloud, tool, tool.levels[0], pose, ranges,
+                                [](std::uint32_t, std::uint32_t, Vec3) {}),
+              expected)
+        << k;
     inside += expected;
   }
-  EXPECT_GT(inside, 1000);
-  EXPECT_LT(inside, 19000);
+  EXPECT_GT(inside, 1000U);
+  EXPECT_LT(inside, 19000U);
 }
 
 // Calls visit(index) for every sphere that holds x, by the paper's Algorithm 1.

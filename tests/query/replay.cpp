@@ -40,7 +40,7 @@ class Bytes {
     const Wrench& w = r.wrench;
     add(std::vector<double>{r.volume, r.volume_fraction, w.force.x, w.force.y, w.force.z,
                             w.torque.x, w.torque.y, w.torque.z});
-    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points.value()});
+    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points.value_or(0)});
   }
   std::vector<std::byte> take() { return std::move(all_); }
 
@@ -96,12 +96,11 @@ Pose pose(Numbers& numbers, Vec3 at) {
                     numbers.between(0.85, 1.1)}};
 }
 
-void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure,
-              const Device& device, Vec3 at, Numbers& numbers, Bytes& bytes) {
+void run_path(const ToolModel& tool, const AnyBody& cloud, Measure measure, const Device& device,
+              Vec3 at, Numbers& numbers, Bytes& bytes) {
   QueryOptions options;
   options.measure = measure;
-  options.device = device;
-  options.counts_points = true;
+  options.device = device_for(measure, device);
   ToolQuery query(tool, options);
   for (int k = 0; k < kPosesPerPath; ++k) {
     bytes.add(query.run(cloud, pose(numbers, at)));
@@ -131,7 +130,7 @@ std::vector<std::byte> replay(const Device& device) {
     const Cloud points = scattered(make_cloud(image, view, pca));
     for (const Cloud& cloud : {seen, points}) {
       add_cloud(cloud, bytes);
-      const PreparedCloud prepared(cloud);
+      const AnyBody prepared(cloud);
       for (const ToolModel& tool : tools) {
         for (const Measure measure : {Measure::refined, Measure::paper})
           run_path(tool, prepared, measure, device, at, numbers, bytes);

@@ -51,19 +51,18 @@ class Pipeline {
       NormalOptions normals;
       normals.method = method;
       const Cloud cloud = make_cloud(scaled(image_, scale), camera_, normals);
-      query_all(tool, PreparedCloud(cloud), scale, results);
-      query_all(tool, PreparedCloud(without_camera(cloud)), scale, results);
+      query_all(tool, AnyBody(cloud), scale, results);
+      query_all(tool, AnyBody(without_camera(cloud)), scale, results);
     }
     return results;
   }
 
  private:
-  static void query_all(const ToolModel& tool, const PreparedCloud& cloud, double scale,
+  static void query_all(const ToolModel& tool, const AnyBody& cloud, double scale,
                         std::vector<Result>& results) {
     for (const Measure measure : {Measure::refined, Measure::paper}) {
       QueryOptions options;
       options.measure = measure;
-      options.counts_points = true;
       ToolQuery query(tool, options);
       for (int k = 0; k < 4; ++k)
         results.push_back(query.run(cloud, {turned(), scale * Vec3{0.01, -0.02, 0.9 + 0.04 * k}}));

@@ -37,9 +37,8 @@ class SameBits : public ::testing::TestWithParam<Variant> {
                             Vec3 shift = {}) const {
     QueryOptions options;
     options.measure = GetParam().measure;
-    options.counts_points = true;
     ToolQuery query(tool, options);
-    const PreparedCloud prepared(cloud);
+    const AnyBody prepared(cloud);
     std::vector<Result> results(12);
     for (int k = 0; k < 12; ++k) {
       results[k] = query.run(
@@ -67,10 +66,9 @@ Pose in_floats(const Pose& pose) {
 
 TEST_P(SameBits, ForARoundedRotationAndTheNearestOne) {
   const ToolModel tool = lattice_cube(0.2, 6, 4);
-  const PreparedCloud prepared(cloud());
+  const AnyBody prepared(cloud());
   QueryOptions options;
   options.measure = GetParam().measure;
-  options.counts_points = true;
   ToolQuery query(tool, options);
   for (int k = 0; k < 12; ++k) {
     const Pose rounded = in_floats({generic_rotation(), {0.01, -0.02, 0.84 + 0.015 * k}});
@@ -119,8 +117,8 @@ struct Step {
   Result result;
   std::vector<SphereState> states;
 };
-std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) {
-  ToolQuery query(tool, {.coherent = true, .counts_points = true});
+std::vector<Step> go_through(const AnyBody& cloud, const ToolModel& tool) {
+  ToolQuery query(tool, {.coherent = true});
   std::vector<Step> steps(12);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Pose pose{generic_rotation(), {0.01, -0.02, 0.84 + 0.03 * static_cast<double>(k)}};
@@ -132,7 +130,7 @@ std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) 
 
 // The tools are so large that threads share the flood.
 TEST(SameBitsOfAFlood, ForAnyNumberOfThreads) {
-  const PreparedCloud cloud(see(synthetic::make_scene("inverted-ball")));
+  const AnyBody cloud(see(synthetic::make_scene("inverted-ball")));
   for (const ToolModel& tool : {lattice_cube(0.2, 24, 2), lattice_line(0.2, 24)}) {
     set_thread_count(1);
     const std::vector<Step> one = go_through(cloud, tool);

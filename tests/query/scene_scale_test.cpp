@@ -15,8 +15,7 @@ constexpr double kReach = 0.17;
 constexpr double kPixel = 1.0 / 525;  // metres at 1 m
 
 SceneScale scale_of(const char* scene) {
-  return scene_scale(PreparedCloud(testing::see(synthetic::make_scene(scene))), kReach,
-                     Vec3{0, 0, 1});
+  return scene_scale(AnyBody(testing::see(synthetic::make_scene(scene))), kReach, Vec3{0, 0, 1});
 }
 
 TEST(SceneScale, OfAWallIsItsPixels) {
@@ -51,24 +50,24 @@ TEST(SceneScale, TellsTheNoiseOfTheSensor) {
     const double u = static_cast<double>(state >> 11) * 0x1p-53;
     p.z += static_cast<float>(amplitude * (2 * u - 1));
   }
-  const SceneScale scale = scene_scale(PreparedCloud(cloud), kReach, Vec3{0, 0, 1});
+  const SceneScale scale = scene_scale(AnyBody(cloud), kReach, Vec3{0, 0, 1});
   EXPECT_NEAR(scale.noise, amplitude / std::sqrt(3.0), 0.15 * amplitude);
   EXPECT_NEAR(scale.smallest_radius(), 2 * scale.noise, 1e-12);
 }
 
 TEST(SceneScale, LooksNearTheToolOnly) {
   // A plate stands half a metre in front of a wall; its points are closer to each other.
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("plate")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("plate")));
   EXPECT_NEAR(scene_scale(cloud, kReach, Vec3{0, 0, 1}).spacing, kPixel, 0.1 * kPixel);
   EXPECT_GT(scene_scale(cloud, kReach, std::nullopt).spacing, 1.3 * kPixel);
 }
 
 TEST(SceneScale, SameBitsForAnyOrderAndThreads) {
   const Cloud cloud = testing::see(synthetic::make_scene("groove"));
-  const SceneScale once = scene_scale(PreparedCloud(cloud), kReach, std::nullopt);
+  const SceneScale once = scene_scale(AnyBody(cloud), kReach, std::nullopt);
   set_thread_count(3);
   const SceneScale again =
-      scene_scale(PreparedCloud(testing::permuted(testing::doubled(cloud))), kReach, std::nullopt);
+      scene_scale(AnyBody(testing::permuted(testing::doubled(cloud))), kReach, std::nullopt);
   set_thread_count(0);
   EXPECT_EQ(once.spacing, again.spacing);
   EXPECT_EQ(once.noise, again.noise);
@@ -82,7 +81,7 @@ TEST(SceneScale, RefusesAHandfulOfPoints) {
     cloud.positions[i].x = static_cast<float>(i);
   cloud.normals.assign(cloud.positions.size(), {0, 0, 1});
   cloud.radii.assign(cloud.positions.size(), 1);
-  EXPECT_THROW(scene_scale(PreparedCloud(cloud), kReach, std::nullopt), Error);
+  EXPECT_THROW(scene_scale(AnyBody(cloud), kReach, std::nullopt), Error);
 }
 
 TEST(SceneLevel, StopsAtTheSmallestSphereThatPointsResolve) {
@@ -110,10 +109,12 @@ TEST(SceneLevel, StopsAtTheSmallestSphereThatPointsResolve) {
 // Counts the points that a query reads: those in the ranges that hold all of the tool's ball.
 std::size_t looked_at(const Cloud& cloud) {
   std::size_t count = 0;
-  const PreparedCloud prepared(cloud);
+  const AnyBody prepared(cloud);
   const Vec3 place = Vec3{0, 0, 1} - prepared.origin();
-  prepared.for_ranges_in_ball(
-      place, 0.1, [&](std::uint32_t begin, std::uint32_t end) { count += end - begin; });
+  prepared.visit([&](const auto& body) {
+    body.prepared().for_ranges_in_ball(
+        place, 0.1, [&](std::uint32_t begin, std::uint32_t end) { count += end - begin; });
+  });
   return count;
 }
 

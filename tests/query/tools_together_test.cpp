@@ -16,8 +16,7 @@ class ToolsTogether : public ::testing::Test {
   ToolsTogether() : cloud_(testing::see(synthetic::make_scene("wall"))) {
     for (const std::uint32_t side : {5U, 2U, 4U}) {
       tools_.push_back(testing::lattice_cube(0.1 * side, side, 1));
-      queries_.emplace_back(tools_.back(),
-                            QueryOptions{.counts_points = true, .stiffness = 1.0 * side});
+      queries_.emplace_back(tools_.back(), QueryOptions{.stiffness = 1.0 * side});
       together_.push_back(&queries_.back());
     }
     for (std::uint32_t k = 0; k < 30; ++k)
@@ -37,7 +36,7 @@ class ToolsTogether : public ::testing::Test {
     return "";
   }
 
-  PreparedCloud cloud_;
+  AnyBody cloud_;
   std::deque<ToolModel> tools_;
   std::deque<ToolQuery> queries_;
   std::vector<ToolQuery*> together_;

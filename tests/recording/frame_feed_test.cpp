@@ -35,7 +35,7 @@ class AFeed : public test::InTemporaryFolder {
     }
   }
   // Returns the depth of the wall that a cloud shows.
-  static double wall(const PreparedCloud& cloud) {
+  static double wall(const AnyBody& cloud) {
     return cloud.positions().empty() ? 0 : widen(cloud.positions().front()).z;
   }
   static constexpr std::size_t kEmpty = 3, kBroken = 4, kLost = 7;
@@ -50,14 +50,14 @@ TEST_F(AFeed, HoldsTheLastGoodFrame) {
     feed.advance_to(step);
     if (step < 5) {
       EXPECT_FALSE(feed.frame());
-      EXPECT_EQ(wall(feed.cloud()), 0);
+      EXPECT_EQ(wall(feed.body()), 0);
       continue;
     }
     std::size_t frame = (step - 5) / 10;
     if (frame == kEmpty || frame == kBroken) frame = kEmpty - 1;
     if (frame == kLost) frame = kLost - 1;
     ASSERT_EQ(feed.frame(), frame) << step;
-    EXPECT_NEAR(wall(feed.cloud()), 1 + 0.01 * static_cast<double>(frame), 1e-6);
+    EXPECT_NEAR(wall(feed.body()), 1 + 0.01 * static_cast<double>(frame), 1e-6);
   }
   EXPECT_EQ(feed.counts().used, 9u);
   EXPECT_EQ(feed.counts().empty, 1u);
@@ -81,7 +81,7 @@ TEST_F(AFeed, PutsCloudsWhereTheirCameraStood) {
   for (RecordedFrame& frame : recording_.frames) frame.camera = Pose{{}, {3, 4, 5}};
   FrameFeed feed(recording_, {1000, 1, 0, 0, false}, camera());
   feed.advance_to(0);
-  EXPECT_EQ(feed.cloud().camera_to_world().translation, (Vec3{3, 4, 5}));
+  EXPECT_EQ(feed.body().to_world().translation, (Vec3{3, 4, 5}));
 }
 
 TEST_F(AFeed, MayBeLeftAtAnyStep) {

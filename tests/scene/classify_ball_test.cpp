@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 
@@ -43,8 +43,8 @@ class RandomBalls {
 class LookAtABall : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(LookAtABall, SaysOfTheBallsInItWhatALookAtThemDoes) {
-  const PreparedCloud cloud(testing::see(synthetic::make_scene(GetParam())));
-  const DepthSurface surface = cloud.depth_surface();
+  const DepthBody cloud(testing::see(synthetic::make_scene(GetParam())));
+  const DepthSurface surface = cloud.surface();
   RandomBalls balls;
   int free = 0, free_parts = 0, none_free = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -74,8 +74,8 @@ TEST_P(LookAtABall, SaysOfTheBallsInItWhatALookAtThemDoes) {
 }
 
 TEST(BallClass, OverflowsNowhere) {
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
-  DepthSurface surface = cloud.depth_surface();
+  const DepthBody cloud(testing::see(synthetic::make_scene("wall")));
+  DepthSurface surface = cloud.surface();
   surface.k.fx = surface.k.fy = 1e300;
   for (const Vec3 center : {Vec3{1e20, 0, 0.3}, Vec3{-1e20, 1e20, 0.3}})
     EXPECT_EQ(surface.classify_ball(center, 1e-301).side, Side::free);

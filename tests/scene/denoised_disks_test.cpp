@@ -8,7 +8,7 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/scene/points/disk_surface.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/points/prepared_points.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -89,12 +89,12 @@ Cloud plate(double half, double deviation) {
 
 // Returns the fraction of places classified on the wrong side, of those near the obstacle but
 // further than `clear` from its surface.
-double part_wrong(const PreparedCloud& cloud, double clear,
+double part_wrong(const PreparedPoints& cloud, double clear,
                   const std::function<double(Vec3)>& distance) {
   constexpr int kPlaces = 20000;
   Noise noise;
   int wrong = 0, asked = 0;
-  const DiskSurface disks = cloud.disk_surface();
+  const DiskSurface disks = cloud.surface();
   for (int k = 0; k < kPlaces; ++k) {
     const Vec3 x{noise.within(-0.04, 0.04), noise.within(-0.04, 0.04), noise.within(-0.03, 0.03)};
     const double d = distance(x);
@@ -108,7 +108,7 @@ double part_wrong(const PreparedCloud& cloud, double clear,
 
 TEST(DenoisedDisks, NoiseIsAveraged) {
   constexpr double kHeight = 0.002, kSlope = 0.15;
-  const PreparedCloud cloud(noisy_wall(kHeight, kSlope));
+  const PreparedPoints cloud(noisy_wall(kHeight, kSlope));
   double squared_height = 0, squared_slope = 0;
   int inner = 0;
   for (std::size_t i = 0; i < cloud.positions().size(); ++i) {
@@ -126,7 +126,7 @@ TEST(DenoisedDisks, NoiseIsAveraged) {
 TEST(DenoisedDisks, CurvatureMovesNothing) {
   constexpr double kRadius = 0.1;
   for (const double side : {1.0, -1.0}) {  // a ball, and the inside of one
-    const PreparedCloud cloud(over_square([&](double x, double y, Cloud& points) {
+    const PreparedPoints cloud(over_square([&](double x, double y, Cloud& points) {
       const double z = std::sqrt(kRadius * kRadius - x * x - y * y);
       add_point({x, y, side * z}, {x, y, side * z}, points);
     }));
@@ -146,7 +146,7 @@ TEST(DenoisedDisks, EdgesAndGroovesAreSharp) {
   for (const bool is_convex : {true, false}) {
     const Roof roof{is_convex};
     const auto distance = [&](Vec3 x) { return roof.distance(x); };
-    const PreparedCloud clean(roof.seen(0));
+    const PreparedPoints clean(roof.seen(0));
     EXPECT_EQ(part_wrong(clean, 0.0004, distance), 0);
     for (std::size_t i = 0; i < clean.positions().size(); ++i) {
       const Vec3 foot = widen(clean.disks().feet[i]);
@@ -158,8 +158,8 @@ TEST(DenoisedDisks, EdgesAndGroovesAreSharp) {
     for (const SecondPlane& second : clean.disks().seconds) EXPECT_EQ(second.is_convex, is_convex);
 
     const Cloud noisy = roof.seen(0.001);
-    EXPECT_LT(part_wrong(PreparedCloud(noisy), 0.0005, distance), 0.001);
-    EXPECT_GT(part_wrong(PreparedCloud(noisy, Denoising::off), 0.0005, distance), 0.004);
+    EXPECT_LT(part_wrong(PreparedPoints(noisy), 0.0005, distance), 0.001);
+    EXPECT_GT(part_wrong(PreparedPoints(noisy, Denoising::off), 0.0005, distance), 0.004);
   }
 }
 
@@ -167,7 +167,7 @@ TEST(DenoisedDisks, EdgesAndGroovesAreSharp) {
 TEST(DenoisedDisks, NormalsBesideAnEdgeAreThoseOfTheirSide) {
   for (const bool is_convex : {true, false}) {
     const Roof roof{is_convex};
-    const PreparedCloud cloud(roof.seen(0));
+    const PreparedPoints cloud(roof.seen(0));
     int inner = 0;
     for (std::size_t i = 0; i < cloud.positions().size(); ++i) {
       const Vec3 foot = widen(cloud.disks().feet[i]), normal = widen(cloud.disks().normals[i]);
@@ -208,7 +208,7 @@ TEST(DenoisedDisks, ANarrowWallDoesNotLean) {
                   normalized_or_zero({-part, 0, 1 - part}) + tilt, seen);
       }
     }
-    const PreparedCloud cloud(seen);
+    const PreparedPoints cloud(seen);
     for (std::size_t i = 0; i < cloud.positions().size(); ++i) {
       const Vec3 foot = widen(cloud.disks().feet[i]), normal = widen(cloud.disks().normals[i]);
       if (std::fabs(foot.z - kWide / 2) > 0.3 * kWide || std::fabs(foot.y) > 0.04) continue;
@@ -226,19 +226,19 @@ TEST(DenoisedDisks, ThinPlatesKeepTheirSides) {
   constexpr double kHalf = 0.002;
   const auto distance = [](Vec3 x) { return std::fabs(x.z) - kHalf; };
   const Cloud noisy = plate(kHalf, 0.002);
-  EXPECT_LT(part_wrong(PreparedCloud(noisy), 0.001, distance), 1e-3);
-  EXPECT_GT(part_wrong(PreparedCloud(noisy, Denoising::off), 0.001, distance), 0.01);
+  EXPECT_LT(part_wrong(PreparedPoints(noisy), 0.001, distance), 1e-3);
+  EXPECT_GT(part_wrong(PreparedPoints(noisy, Denoising::off), 0.001, distance), 0.01);
 }
 
 // Opposite sides are recognised after denoising, so that points moved beyond the other side do not
 // turn the plate into a slot.
 TEST(DenoisedDisks, SheetsWithoutThicknessHoldNothing) {
   for (const double offset : {0.0, 0.4 * kSpacing}) {  // offset of one side's lattice
-    const PreparedCloud cloud(over_square([&](double x, double y, Cloud& sheet) {
+    const PreparedPoints cloud(over_square([&](double x, double y, Cloud& sheet) {
       add_point({x, y, 0}, {0, 0, 1}, sheet);
       add_point({x + offset, y - offset, 0}, {0, 0, -1}, sheet);
     }));
-    const DiskSurface disks = cloud.disk_surface();
+    const DiskSurface disks = cloud.surface();
     for (const double z : {-0.01, -0.001, 0.0, 0.001, 0.01}) {
       const Vec3 x{0.003, -0.007, z};
       const SurfaceSample on_surface = disks.sample(x);
@@ -249,7 +249,7 @@ TEST(DenoisedDisks, SheetsWithoutThicknessHoldNothing) {
 
 TEST(DenoisedDisks, ThinPlatesAreNoSlots) {
   constexpr double kHalf = 0.002;
-  const PreparedCloud cloud(plate(kHalf, 0.002));
+  const PreparedPoints cloud(plate(kHalf, 0.002));
   EXPECT_GT(cloud.disks().seconds.size(), 0.9 * static_cast<double>(cloud.positions().size()));
   double squared = 0;
   for (const SecondPlane& second : cloud.disks().seconds) {
@@ -265,8 +265,8 @@ TEST(DenoisedDisks, ABallInAPlateIsCutByBothSides) {
   for (const double side : {1.0, -1.0}) {  // a plate, and a slot
     Cloud seen = plate(kHalf, 0);
     for (Vec3f& n : seen.normals) n.z *= static_cast<float>(side);
-    const PreparedCloud cloud(seen);
-    const DiskSurface disks = cloud.disk_surface();
+    const PreparedPoints cloud(seen);
+    const DiskSurface disks = cloud.surface();
     for (const double z : {-0.004, -0.002, -0.0003, 0.0, 0.001, 0.0025}) {
       const Vec3 x{0.0011, -0.0023, z};
       const double between =
@@ -288,8 +288,8 @@ TEST(DenoisedDisks, SmallFeaturesStay) {
       add_point({x, y, z}, squared > 0 ? Vec3{x, 0, z} : Vec3{0, 0, 1}, cloud);
     });
     const auto distance = [&](Vec3 x) { return std::min(x.z, std::hypot(x.x, x.z) - radius); };
-    const double measured = part_wrong(PreparedCloud(seen, Denoising::off), 0.0005, distance);
-    EXPECT_LT(part_wrong(PreparedCloud(seen), 0.0005, distance), measured + 0.0015) << radius;
+    const double measured = part_wrong(PreparedPoints(seen, Denoising::off), 0.0005, distance);
+    EXPECT_LT(part_wrong(PreparedPoints(seen), 0.0005, distance), measured + 0.0015) << radius;
   }
 }
 
@@ -299,8 +299,8 @@ TEST(DenoisedDisks, OutliersJoinTheirSurface) {
   add_point({0.0102, 0.0107, 0.008}, {0, 0, -1}, seen);  // from the back, in front of the front
   add_point({-0.0201, -0.0052, 0.010}, {-0.5, 0.2, 0.8}, seen);  // on no surface
   const auto distance = [](Vec3 x) { return std::fabs(x.z) - 0.002; };
-  EXPECT_EQ(part_wrong(PreparedCloud(seen), 0.001, distance), 0);
-  EXPECT_GT(part_wrong(PreparedCloud(seen, Denoising::off), 0.001, distance), 0.001);
+  EXPECT_EQ(part_wrong(PreparedPoints(seen), 0.001, distance), 0);
+  EXPECT_GT(part_wrong(PreparedPoints(seen, Denoising::off), 0.001, distance), 0.001);
 }
 
 // These outliers are far in front of a step's edge. They may fit the plane of the riser best, but
@@ -316,8 +316,8 @@ TEST(DenoisedDisks, OutliersContinueNoWall) {
   add_point({0.0004, 0.0103, 0.018}, {0.1, 0, 1}, seen);
   add_point({0.0012, -0.0207, 0.017}, {-0.3, 0.2, 0.9}, seen);
   const auto distance = [](Vec3 x) { return std::max(x.x - 0.001, x.z); };
-  EXPECT_LT(part_wrong(PreparedCloud(seen), 0.002, distance), 1e-4);
-  EXPECT_GT(part_wrong(PreparedCloud(seen, Denoising::off), 0.002, distance), 0.003);
+  EXPECT_LT(part_wrong(PreparedPoints(seen), 0.002, distance), 1e-4);
+  EXPECT_GT(part_wrong(PreparedPoints(seen, Denoising::off), 0.002, distance), 0.003);
 }
 
 void expect_same(const DenoisedDisks& a, const DenoisedDisks& b, float scale = 1) {
@@ -341,7 +341,7 @@ TEST(DenoisedDisks, StraysJoinTheNearestDisk) {
       Cloud cloud = noisy_wall(0.0002, 0.02);
       for (int k = 0; k < strays; ++k)
         add_point({0.0003 * k, 0.0004, height}, {0.1 * k, 0.2, 1}, cloud);
-      const PreparedCloud prepared(cloud);
+      const PreparedPoints prepared(cloud);
       for (std::size_t i = 0; i < prepared.positions().size(); ++i) {
         EXPECT_LT(std::fabs(widen(prepared.disks().feet[i]).z), 0.001)
             << strays << " at " << height << " m";
@@ -360,7 +360,7 @@ TEST(DenoisedDisks, StraysOfDenseCloudsJoinTheNearestDisk) {
   std::fill(cloud.radii.begin(), cloud.radii.end(), static_cast<float>(5 * kSpacing));
   add_point({0.0111, -0.0123, 0.1}, {0, 0.1, 1}, cloud);
   cloud.radii.back() = static_cast<float>(5 * kSpacing);
-  const PreparedCloud prepared(cloud);
+  const PreparedPoints prepared(cloud);
   for (std::size_t i = 0; i < prepared.positions().size(); ++i) {
     if (prepared.positions()[i].z < 0.05F) continue;
     const Vec3 foot = widen(prepared.disks().feet[i]);
@@ -376,26 +376,26 @@ TEST(DenoisedDisks, AreTheSameWhateverTheThreadsOrderAndScale) {
     const Vec3 p = widen(noisy.positions[i]);
     add_point({p.x, p.y, p.z - 0.05}, widen(noisy.normals[i]), seen);
   }
-  const PreparedCloud once(seen);
+  const PreparedPoints once(seen);
   EXPECT_GT(once.disks().seconds.size(), 100U);
   for (const int threads : {1, 2, 3, 16}) {
     set_thread_count(threads);
-    expect_same(once.disks(), PreparedCloud(seen).disks());
+    expect_same(once.disks(), PreparedPoints(seen).disks());
   }
   set_thread_count(0);
-  expect_same(once.disks(), PreparedCloud(testing::permuted(seen)).disks());
-  expect_same(once.disks(), PreparedCloud(testing::doubled(seen)).disks());
+  expect_same(once.disks(), PreparedPoints(testing::permuted(seen)).disks());
+  expect_same(once.disks(), PreparedPoints(testing::doubled(seen)).disks());
   for (const int exponent : {-40, 40}) {
     const float scale = std::ldexp(1.0F, exponent);
     Cloud scaled = seen;
     for (Vec3f& p : scaled.positions) p = {scale * p.x, scale * p.y, scale * p.z};
     for (float& r : scaled.radii) r *= scale;
-    expect_same(once.disks(), PreparedCloud(scaled).disks(), scale);
+    expect_same(once.disks(), PreparedPoints(scaled).disks(), scale);
   }
 }
 
 TEST(DenoisedDisks, AsMeasuredTheyAreThePoints) {
-  const PreparedCloud cloud(noisy_wall(0.002, 0.15), Denoising::off);
+  const PreparedPoints cloud(noisy_wall(0.002, 0.15), Denoising::off);
   EXPECT_EQ(cloud.disks().feet, cloud.positions());
   EXPECT_EQ(cloud.disks().normals, cloud.normals());
   EXPECT_TRUE(cloud.disks().seconds.empty());
@@ -414,7 +414,7 @@ TEST(DenoisedDisks, ExtremesAreFinite) {
   for (Cloud& cloud : clouds) {
     for (const float radius : {0.0F, 1e-30F, 0.001F, 10.0F, std::numeric_limits<float>::max()}) {
       std::fill(cloud.radii.begin(), cloud.radii.end(), radius);
-      const PreparedCloud prepared(cloud);
+      const PreparedPoints prepared(cloud);
       for (const Vec3f& foot : prepared.disks().feet) EXPECT_TRUE(is_finite(foot));
       for (const Vec3f& normal : prepared.disks().normals)
         EXPECT_NEAR(norm(widen(normal)), 1, 1e-3);

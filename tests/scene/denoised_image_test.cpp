@@ -11,7 +11,7 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/test_name.h"
@@ -329,15 +329,14 @@ TEST(DenoisedImage, IsReadAsMeasuredWhereThatIsAsked) {
   const DepthImage depth = scene.noisy_depth();
   const Camera camera{scene.intrinsics(), depth.width, depth.height, {}};
   const Cloud cloud = make_cloud(depth, camera, {});
-  const PreparedCloud measured(cloud, Denoising::off), denoised(cloud);
+  const DepthBody measured(cloud, Denoising::off), denoised(cloud);
   const std::vector<Vec3f> normals = estimate_normals(depth, camera.intrinsics, {});
   std::size_t differ = 0;
   for (std::size_t i = 0; i < depth.depth.size(); ++i) {
     if (!(depth.depth[i] > 0)) continue;
-    ASSERT_EQ(measured.depth_surface().tiles[0][i].high, 1 / depth.depth[i]);
-    ASSERT_LT(norm(widen(measured.depth_surface().normals[i]) - widen(normals[i])), 1e-6);
-    differ +=
-        measured.depth_surface().tiles[0][i].high != denoised.depth_surface().tiles[0][i].high;
+    ASSERT_EQ(measured.surface().tiles[0][i].high, 1 / depth.depth[i]);
+    ASSERT_LT(norm(widen(measured.surface().normals[i]) - widen(normals[i])), 1e-6);
+    differ += measured.surface().tiles[0][i].high != denoised.surface().tiles[0][i].high;
   }
   EXPECT_GT(differ, depth.depth.size() / 2);
 }

@@ -24,16 +24,16 @@ void add(std::string& bytes, const T* values, std::size_t count) {
 }
 
 // Returns the bytes of all that a query reads.
-std::string bytes_of(const PreparedCloud& cloud) {
+std::string bytes_of(const PreparedImage& cloud) {
   std::string bytes;
   add(bytes, cloud.positions().data(), cloud.positions().size());
   add(bytes, cloud.normals().data(), cloud.normals().size());
   add(bytes, cloud.pixel_begin().data(), cloud.pixel_begin().size());
   const Vec3 origin = cloud.origin();
   add(bytes, &origin, 1);
-  const Pose camera = cloud.camera_to_world();
+  const Pose camera = cloud.camera().to_world;
   add(bytes, &camera, 1);
-  const DepthSurface surface = cloud.depth_surface();
+  const DepthSurface surface = cloud.surface();
   add(bytes, surface.normals, cloud.pixel_begin().size() - 1);
   add(bytes, surface.measured, cloud.pixel_begin().size() - 1);
   for (int level = 0; level < surface.levels; ++level) {
@@ -74,8 +74,8 @@ Frame frame(std::uint32_t width, std::uint32_t height) {
 }
 
 void expect_same(FramePreparation& preparation, const Frame& f, const NormalOptions& options,
-                 PreparedCloud& cloud, Denoising points = Denoising::on, bool has_points = true) {
-  const PreparedCloud expected(make_cloud(f.depth, f.camera, options), points);
+                 PreparedImage& cloud, Denoising points = Denoising::on, bool has_points = true) {
+  const PreparedImage expected(make_cloud(f.depth, f.camera, options), points);
   if (has_points) {
     ASSERT_GT(expected.positions().size(), 0u);
   }
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, FramePreparationOf,
 TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
   const NormalOptions options{GetParam(), 7, kEdgeGate};
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   for (const int threads : {1, 4}) {
     set_thread_count(threads);
     // Frames share the memory of the frame before: larger, smaller, with fewer points and with
@@ -113,7 +113,7 @@ TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
 TEST(FramePreparation, TakesImagesOfAnySize) {
   const NormalOptions options;
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   for (const auto& [width, height] :
        {std::pair(1U, 1U), std::pair(1U, 65U), std::pair(65U, 1U), std::pair(33U, 33U)})
     expect_same(preparation, frame(width, height), options, cloud, Denoising::on,
@@ -123,10 +123,10 @@ TEST(FramePreparation, TakesImagesOfAnySize) {
 TEST(FramePreparation, TakesACloudWhoseMemoryWasMovedAway) {
   const NormalOptions options;
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   const Frame f = frame(64, 48);
   expect_same(preparation, f, options, cloud);
-  const PreparedCloud taken = std::move(cloud);
+  const PreparedImage taken = std::move(cloud);
   expect_same(preparation, f, options,
               cloud);  // NOLINT(bugprone-use-after-move): tests reuse after a move
   EXPECT_TRUE(bytes_of(taken) == bytes_of(cloud));
@@ -136,7 +136,7 @@ TEST(FramePreparation, TakesACloudWhoseMemoryWasMovedAway) {
 TEST(FramePreparation, WhatIsRefusedLeavesNoCloudBehind) {
   const NormalOptions options{NormalMethod::inverse_depth, 7, 0};
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   const Frame good = frame(64, 48);
   expect_same(preparation, good, options, cloud);
   Frame wild = good;
@@ -146,16 +146,16 @@ TEST(FramePreparation, WhatIsRefusedLeavesNoCloudBehind) {
       test::refusal([&] { preparation.prepare(wild.depth, wild.camera, cloud); });
   EXPECT_NE(message, "");
   EXPECT_EQ(message,
-            test::refusal([&] { PreparedCloud{make_cloud(wild.depth, wild.camera, options)}; }));
+            test::refusal([&] { PreparedImage{make_cloud(wild.depth, wild.camera, options)}; }));
   EXPECT_EQ(cloud.positions().size(), 0U);
-  EXPECT_FALSE(cloud.is_organised());
+  EXPECT_TRUE(cloud.pixel_begin().empty());
   expect_same(preparation, good, options, cloud);
 }
 
 TEST(FramePreparation, ReadsPointsAsMeasured) {
   const NormalOptions options;
   FramePreparation preparation(options, Denoising::off);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   Frame f = frame(200, 150);
   expect_same(preparation, f, options, cloud, Denoising::off);
   f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};  // beyond usual intrinsics
@@ -165,7 +165,7 @@ TEST(FramePreparation, ReadsPointsAsMeasured) {
 TEST(FramePreparation, CamerasBeyondTheUsualAreNoOthers) {
   const NormalOptions options;
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   Frame f = frame(64, 48);
   f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};
   expect_same(preparation, f, options, cloud);
@@ -176,13 +176,13 @@ TEST(FramePreparation, CamerasBeyondTheUsualAreNoOthers) {
 TEST(FramePreparation, RefusesWhatCloudsAreRefusedFor) {
   const NormalOptions options;
   FramePreparation preparation(options);
-  PreparedCloud cloud{Cloud{}};
+  PreparedImage cloud;
   const auto expect_refusal = [&](const Frame& f, const std::string& part) {
     const std::string message =
         test::refusal([&] { preparation.prepare(f.depth, f.camera, cloud); });
     EXPECT_NE(message.find(part), std::string::npos) << message;
     EXPECT_EQ(message,
-              test::refusal([&] { PreparedCloud{make_cloud(f.depth, f.camera, options)}; }));
+              test::refusal([&] { PreparedImage{make_cloud(f.depth, f.camera, options)}; }));
   };
   Frame f = frame(64, 48);
   f.camera.intrinsics.fx = 0;

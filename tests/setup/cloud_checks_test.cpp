@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "tests/setup/test_setups.h"
 
 namespace vpm {
@@ -17,9 +17,10 @@ namespace {
 // Returns what is said of a tool at these poses, with the volume that was measured there.
 std::string said_of(const ToolModel& tool, const Cloud& cloud, const std::vector<Pose>& poses,
                     double volume = 0) {
-  const PreparedCloud prepared(cloud);
+  std::optional<DepthBody> image;
+  if (cloud.sensor) image.emplace(cloud);
   std::optional<DepthSurface> surface;
-  if (cloud.sensor) surface = prepared.depth_surface();
+  if (image) surface = image->surface();
   CloudChecks checks({&tool}, cloud, surface);
   Result result;
   result.volume = volume;

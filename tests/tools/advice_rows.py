@@ -417,6 +417,8 @@ COMMANDS = [
      f"{TOOL} --poses poses.txt --shadows solid", WALL),
     (f"{TOOL} --poses poses.txt --reuse 0.001", r"is gone: leave it out; a coarser (--level)",
      f"{TOOL} --poses poses.txt {{0}} 30"),
+    (f"{TOOL} --poses poses.txt --count-points", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
+    (f"{TOOL} --poses poses.txt --no-points", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     (f"{TOOL} --poses poses.txt --standby-us 9", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     ("vpm-query --tool - --cloud - --poses poses.txt",
      "only one of --tool, --cloud, --poses and --trajectory can be standard input",

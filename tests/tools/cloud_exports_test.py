@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tests that three.js reads what vpm-normals --export writes.
 
-    export_test.py BIN
+    cloud_exports_test.py BIN
 
 BIN is the folder of the tools. Needs Node.js and three.js, of which Debian has both; skipped, which
 is said, without them. Exit status: 0 if all is read as it was written, 1 otherwise, 77 skipped.

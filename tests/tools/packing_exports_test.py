@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares what three.js reads of the spheres that vpm-pack exports with the spheres.
 
-    exports_test.py --bin DIR[:DIR...]
+    packing_exports_test.py --bin DIR[:DIR...]
 
 Exit status: 0 if all agree, 1 otherwise, 77 (skipped) where node or three.js (Debian: nodejs, libjs-three) is not there.
 """

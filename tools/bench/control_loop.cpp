@@ -11,7 +11,6 @@
 //   behind=0      1: a query sees the image before the newest, which is made ready meanwhile
 //   method=inverse-depth   or pca: normals of the images
 //   batch=1       number of poses asked at once, as planners do; copies of the tool share them
-//   points=0      1: also counts the cloud's points in spheres, which no control loop needs
 //   json=FILE     writes the figures as JSON too
 //   poses=FILE    writes the first path=400 poses, for vpm-query --poses
 #include <algorithm>
@@ -59,8 +58,8 @@ struct Path {
 };
 
 // Returns the height at which this fraction of the tool is inside, by bisection.
-double height_for(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool,
-                  const Path& path, double fraction) {
+double height_for(ToolQuery& query, const AnyBody& cloud, const ToolModel& tool, const Path& path,
+                  double fraction) {
   double low = -tool.reach, high = tool.reach;
   for (int step = 0; step < 24; ++step) {
     const double middle = 0.5 * (low + high);
@@ -81,7 +80,7 @@ std::size_t middle_of(const std::vector<Vec3f>& points) {
                                   points.begin());
 }
 
-Path make_path(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool) {
+Path make_path(ToolQuery& query, const AnyBody& cloud, const ToolModel& tool) {
   const std::size_t middle = middle_of(cloud.positions());
   Path path;
   path.place = cloud.origin() + widen(cloud.positions()[middle]);
@@ -129,7 +128,7 @@ Figures figures_of(std::vector<double> microseconds, const std::vector<double>& 
 }
 
 // Returns poses per second, asked `batch` at a time. Several tools take turns.
-double run_batches(std::deque<ToolQuery>& tools, const PreparedCloud& cloud, const ToolModel& tool,
+double run_batches(std::deque<ToolQuery>& tools, const AnyBody& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
   std::vector<ToolQuery*> together;
   for (ToolQuery& query : tools) together.push_back(&query);
@@ -154,7 +153,7 @@ double run_batches(std::deque<ToolQuery>& tools, const PreparedCloud& cloud, con
   return 1e6 * batches * batch / microseconds_since(begin);
 }
 
-Figures run(std::deque<ToolQuery>& queries, const std::deque<PreparedCloud>& clouds,
+Figures run(std::deque<ToolQuery>& queries, const std::deque<AnyBody>& clouds,
             const ToolModel& tool, const Path& path, int count) {
   // Computes this many poses and asks the last, since one takes no longer than reading the clock.
   constexpr int kPaceOf = 32;
@@ -198,7 +197,7 @@ class CameraStream {
     else
       std::copy(depth.begin(), depth.end(), frames_.metres().begin());
   }
-  DepthFrame prepare() { return frames_.prepare(sensor_.camera.to_world); }
+  DepthBody prepare() { return frames_.prepare(sensor_.camera.to_world); }
 
  private:
   static constexpr double kCountsPerMetre = 5000;
@@ -212,7 +211,7 @@ Figures run_frames(std::deque<ToolQuery>& queries, std::deque<CameraStream>& cam
                    const ToolModel& tool, const Path& path, int count, bool behind) {
   std::vector<double> microseconds, host_us;
   double fraction = 0;
-  std::optional<DepthFrame> last;
+  std::optional<DepthBody> last;
   for (int k = -kWarmUp; k < count; ++k) {
     const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
     const auto asked = Clock::now();
@@ -220,7 +219,7 @@ Figures run_frames(std::deque<ToolQuery>& queries, std::deque<CameraStream>& cam
     cameras[copy].receive();
     const double host = microseconds_since(asked);
     const auto begin = Clock::now();
-    const DepthFrame newest = cameras[copy].prepare();
+    const DepthBody newest = cameras[copy].prepare();
     const Result result = queries[copy].run(behind && last ? *last : newest, pose);
     const double took = microseconds_since(begin);
     last = newest;
@@ -286,7 +285,7 @@ void print_histogram(const Figures& figures) {
   }
 }
 
-nlohmann::json about(const QueryOptions& options, const Level& level, const PreparedCloud& cloud) {
+nlohmann::json about(const QueryOptions& options, const Level& level, const AnyBody& cloud) {
   return {{"device", device_name(options.device)},
           {"measure", options.measure == Measure::paper ? "paper" : "refined"},
           {"spheres", level.sphere_count},
@@ -320,8 +319,7 @@ Options parse(int argc, char** argv) {
   Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
-                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
-                  {"points", "0"}};
+                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
@@ -329,7 +327,7 @@ Options parse(int argc, char** argv) {
       throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
-                      "rotate= frames= behind= method= batch= points= json= poses= path=");
+                      "rotate= frames= behind= method= batch= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -347,7 +345,6 @@ QueryOptions query_options(const Options& options) {
   QueryOptions query_options;
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
-  query_options.counts_points = number(options, "points", 0) != 0;
   return query_options;
 }
 
@@ -375,7 +372,7 @@ std::deque<CameraStream> make_cameras(const Options& options, const Cloud& cloud
 
 // Times single queries, in new images where there are cameras, and adds the figures to `json`.
 void time_single(const Options& options, std::deque<ToolQuery>& queries,
-                 const std::deque<PreparedCloud>& clouds, std::deque<CameraStream>& cameras,
+                 const std::deque<AnyBody>& clouds, std::deque<CameraStream>& cameras,
                  const ToolModel& tool, const Path& path, nlohmann::json& json) {
   const int count = number(options, "queries", 1), behind = number(options, "behind", 0);
   if (!cameras.empty()) {
@@ -403,7 +400,7 @@ void control(int argc, char** argv) {
   const ToolModel tool = read_tool_model(argv[1]);
   const Cloud cloud = read_cloud(argv[2]);
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
-  std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
+  std::deque<AnyBody> clouds{AnyBody(cloud)};
   ToolQuery refined(tool, asked);
   const Path path = make_path(refined, clouds[0], tool);
   asked.measure = measure_of(options);

@@ -74,8 +74,8 @@ Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals) {
 
 double ask(const Device& device, const ToolModel& tool, const Cloud& cloud, Measure measure,
            const Pose& pose) {
-  ToolQuery query(tool, {.measure = measure, .device = device});
-  return sound_fraction(query.run(PreparedCloud(cloud), pose));
+  ToolQuery query(tool, {.measure = measure, .device = device_for(measure, device)});
+  return sound_fraction(query.run(AnyBody(cloud), pose));
 }
 
 Camera small_camera() {

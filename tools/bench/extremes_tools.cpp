@@ -47,14 +47,14 @@ Packing radii_over_six_decades() {
 
 // Places a point in the smallest sphere's centre. Half of that sphere is inside, 1e-19 of the tool
 // and below what the sums resolve.
-Deviation touch_of_the_smallest(const Device& device) {
+Deviation touch_of_the_smallest() {
   const Packing packing = radii_over_six_decades();
   const ToolModel tool = build_tool_model(packing, {});
   const Sphere& smallest = packing.spheres.back();
   Cloud cloud = plane_points({{}}, {{0, 0, 1}});
   cloud.origin = smallest.center;
-  ToolQuery query(tool, {.measure = Measure::paper, .device = device});
-  const Result r = query.run(PreparedCloud(cloud), {});
+  ToolQuery query(tool, {.measure = Measure::paper});
+  const Result r = query.run(AnyBody(cloud), {});
   if (r.boundary != 1) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   constexpr double kResolution = 0x1p-60;
   return {sound_fraction(r), volume(smallest) / 2 / tool.volume, kResolution};
@@ -89,7 +89,7 @@ void add_tools(std::vector<ExtremeCase>& cases, const Device& device, bool quick
       [=] { return at_floor(device, lattice_packing(edge), 0.123, 2e-3); });
   add("radii from 1 to 1e-6",
       [=] { return at_floor(device, radii_over_six_decades(), -0.2, 0.01); });
-  add("radii from 1 to 1e-6, the smallest touched", [=] { return touch_of_the_smallest(device); });
+  add("radii from 1 to 1e-6, the smallest touched", [] { return touch_of_the_smallest(); });
   const std::uint32_t spheres = quick ? 200 : 2000;
   add("needle 1:1000", [=] {
     return packed_into_wall(device, synthetic::make_box(0.2, 0.0002, 0.0002), spheres, 0.01);

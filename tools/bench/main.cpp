@@ -11,7 +11,7 @@ namespace {
 
 struct Arguments {
   std::string suite, folder = "bench-output", meshes, data, occluded = "near";
-  bool quick = false, all = false, baseline = false;
+  bool quick = false, all = false;
   std::uint64_t noise_seed = SuiteOptions::kUsualNoise;
 };
 
@@ -38,8 +38,6 @@ void declare(CLI::App& app, Arguments& a) {
                  "or all (solid)")
       ->check(CLI::IsMember({"near", "solid"}))
       ->capture_default_str();
-  app.add_flag("--baseline", a.baseline,
-               "scaling: time the algorithm as printed beside the measure as printed");
   app.get_option("--device")
       ->description(
           "Compute queries on cpu, or, in " + suite_names(true) +
@@ -50,7 +48,6 @@ void declare(CLI::App& app, Arguments& a) {
 std::string command_of(const Arguments& a, const std::string& device, int threads) {
   const bool usual_noise = a.noise_seed == SuiteOptions::kUsualNoise;
   return "vpm-bench " + a.suite + (a.quick ? " --quick" : "") + (a.all ? " --all" : "") +
-         (a.baseline ? " --baseline" : "") +
          (usual_noise ? "" : " --noise-seed " + std::to_string(a.noise_seed)) +
          (a.occluded == "near" ? "" : " --shadows " + a.occluded) +
          (device == "auto" ? "" : " --device " + device) +
@@ -76,7 +73,6 @@ void run(const tools::Tool& tool, const Arguments& a) {
        .progress = [&](double fraction) { progress.update(fraction); },
        .meshes = a.meshes,
        .data = a.data,
-       .baseline = a.baseline,
        .noise_seed = a.noise_seed,
        .occluded = a.occluded == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach,
        .device = asks_device ? tool.device() : Device{},

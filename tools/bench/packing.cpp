@@ -1,6 +1,5 @@
-// Measures packings: coverage, time and memory beside two greedy packers on voxels, the gain by
-// growing, and the cost per sphere up to a million spheres and per mesh up to two million
-// triangles.
+// Measures packings: coverage, time and memory, the gain by growing, and the cost per sphere up to
+// a million spheres and per mesh up to two million triangles.
 
 #include <algorithm>
 #include <chrono>
@@ -18,7 +17,6 @@
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/peak_memory.h"
 #include "tools/bench/suite.h"
-#include "tools/bench/voxel_greedy.h"
 
 namespace vpm::bench {
 namespace {
@@ -73,10 +71,9 @@ std::string format(const char* pattern, Values... values) {
 class Packings {
  public:
   explicit Packings(const SuiteOptions& options)
-      : options_(options), most_(options.quick ? 1000 : 10000), voxels_(options.quick ? 64 : 256) {
+      : options_(options), most_(options.quick ? 1000 : 10000) {
     report_.suite = "packing";
-    report_.settings = {
-        {"quick", options.quick}, {"all", options.all}, {"spheres", most_}, {"voxels", voxels_}};
+    report_.settings = {{"quick", options.quick}, {"all", options.all}, {"spheres", most_}};
     report_.table.columns = {"part",     "shape",   "method",      "spheres",
                              "coverage", "seconds", "cpu_seconds", "memory_mb"};
     make_shapes();
@@ -167,15 +164,8 @@ class Packings {
       PackOptions pack_options;
       pack_options.spheres = most_;
       pack_options.enclosure = &shape.enclosure;  // vpm-pack has it from its check of the mesh
-      Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
+      const Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
       add_prefixes(shape, "vpm-pack", spheres, cost);
-      std::optional<VoxelGreedy> voxels;
-      const Cost field = cost_of([&] { voxels.emplace(shape.solid, voxels_); });
-      for (const Refine refine : {Refine::local_maximum, Refine::none}) {
-        cost = cost_of([&] { spheres = voxels->pack(most_, refine); });
-        add_prefixes(shape, refine == Refine::none ? "voxel centres" : "refined voxels", spheres,
-                     field + cost);
-      }
       progress(0.6 * ++done_ / static_cast<double>(shapes_.size()));
     }
   }
@@ -328,7 +318,6 @@ class Packings {
 
   const SuiteOptions& options_;
   std::size_t most_;
-  int voxels_;  // along the longest side
   std::vector<Shape> shapes_;
   Report report_;
   int done_ = 0;

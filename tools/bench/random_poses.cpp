@@ -52,7 +52,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
                              int poses, std::uint64_t seed, OccludedSpace occluded,
                              const Device& device) {
-  const PreparedCloud cloud(
+  const AnyBody cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
   const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
   RandomPoses found;
@@ -61,7 +61,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
     const PackedSolid& tool = *tools[t];
     ToolQuery queries[2] = {
         ToolQuery(tool.model, {.level = level, .device = device, .occluded = occluded}),
-        ToolQuery(tool.model, {.measure = Measure::paper, .level = level, .device = device})};
+        ToolQuery(tool.model, {.measure = Measure::paper, .level = level})};
     const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
     while (found.poses < last) {
       const Pose pose = random_pose(seed, tried++, tool.model.reach);

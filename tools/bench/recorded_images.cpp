@@ -38,10 +38,10 @@ std::string path_of(const Frame& frame, const std::string& folder) {
 
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses, const Device& device) {
-  const PreparedCloud prepared(cloud);
+  const AnyBody prepared(cloud);
   ToolQuery solid(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid}),
       near(tool.model, {.level = level, .device = device}),
-      paper(tool.model, {.measure = Measure::paper, .level = level, .device = device});
+      paper(tool.model, {.measure = Measure::paper, .level = level});
   FrameResult result;
   result.frame = name;
   const int tries = 20 * poses;

@@ -32,7 +32,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
 }
 
 // Returns the pose along the optical axis at which kInside of the tool is inside, by bisection.
-Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
+Pose pose_inside(const ToolModel& tool, const AnyBody& cloud) {
   ToolQuery query(tool, {});
   double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
   constexpr int kHalvings = 30;
@@ -153,32 +153,28 @@ struct QueryScene {
   synthetic::Scene scene;
   DepthImage depth;
   Cloud cloud;
-  PreparedCloud prepared;
+  AnyBody prepared;
   std::vector<Pose> poses;
   int calls, few;  // calls of fast and of slow queries
 };
 
 void time_level(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
                 std::uint32_t level, int threads, Report& report) {
-  ToolQuery query(tool.model, {.level = level, .device = suite.device}),
-      counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
+  ToolQuery query(tool.model, {.level = level, .device = suite.device});
   Result result;
   const auto add = [&](const char* what, const Durations& durations) {
     add_query(report, what, level, threads, durations, result.volume_fraction);
   };
   add("refined", timed(seen.calls, QueryScene::kWarmUp,
                        [&](int k) { result = query.run(seen.prepared, seen.pose(k)); }));
-  add("refined, points counted", timed(seen.calls, QueryScene::kWarmUp, [&](int k) {
-        result = counting.run(seen.prepared, seen.pose(k));
-      }));
   add("refined, cold cloud", timed(seen.few, 1, [&](int k) {
-        const PreparedCloud anew(seen.cloud);
+        const AnyBody anew(seen.cloud);
         result = query.run(anew, seen.pose(k));
       }));
 }
 
 void time_sparse_points(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
-                        const PreparedCloud& sparse, int threads, Report& report) {
+                        const AnyBody& sparse, int threads, Report& report) {
   ToolQuery query(tool.model, {.level = tool.levels.front(), .device = suite.device});
   Result result;
   const Durations durations = timed(seen.few, 1, [&](int k) {
@@ -208,7 +204,7 @@ void time_peers(const ReplayTool& tool, const SuiteOptions& suite, const QuerySc
 
 void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   const QueryScene seen(tool, suite);
-  const PreparedCloud sparse(sparse_grazing_view());
+  const AnyBody sparse(sparse_grazing_view());
   const Peers peers(tool.solid);
   const PixelCloud pixels = make_pixel_cloud(seen.depth, seen.scene.camera);
   for (const int threads : compared_threads(suite)) {
@@ -231,7 +227,7 @@ struct CoherentPath {
 };
 
 // Queries every pose by a query that remembers the poses before, and by one that does not.
-void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
+void time_coherence(const ReplayTool& tool, const AnyBody& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
   ToolQuery stateless(tool.model, {.level = level}),
@@ -269,7 +265,7 @@ void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const Co
 
 void time_coherence(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   const synthetic::Scene scene = the_scene();
-  const PreparedCloud cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
+  const AnyBody cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
   constexpr double kRadius = 20e-3;
   const int poses = static_cast<int>(2 * kPi * kRadius / kCoherentStep),
             rounds = suite.quick ? 1 : 8;
@@ -287,7 +283,7 @@ void time_coherence(const ReplayTool& tool, const SuiteOptions& suite, Report& r
 void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   const ThreadCap cap(suite, 1);
   for (const bool camera : {true, false}) {
-    const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
+    const AnyBody once(wide_view(640, camera)), twice(wide_view(1280, camera));
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
     const QueryOptions options{.level = level, .device = suite.device};
@@ -343,9 +339,9 @@ void time_frames(const SuiteOptions& suite, Report& report) {
     add("normals inverse-depth", [&](int) { normals = estimate_normals(depth, k, {}); });
     Cloud cloud;
     add("cloud assembly", [&](int) { cloud = assemble_cloud(depth, scene.camera, normals); });
-    add("cloud preparation", [&](int) { PreparedCloud prepared(cloud); });
+    add("cloud preparation", [&](int) { AnyBody prepared(cloud); });
     FramePreparation preparation{NormalOptions{}};
-    PreparedCloud frame{Cloud{}};
+    PreparedImage frame;
     add("all, inverse-depth", [&](int) { preparation.prepare(depth, scene.camera, frame); });
   }
 }

@@ -40,13 +40,13 @@ Stream read_stream(const std::string& folder, const Device& device) {
 
 PreparedChange prepare_frame(FrameReader& reader, std::size_t frame) {
   PreparedChange prepared = reader.prepare({0, {frame}, false});
-  if (!prepared.has_frame()) refuse(prepared.unusable.front().message);
+  if (!prepared.body) refuse(prepared.unusable.front().message);
   return prepared;
 }
 
 // Returns the point nearest to the image's middle that is nearer than half of its neighbourhood.
-std::size_t middle_point(const PreparedCloud& cloud) {
-  const Vec3 camera = cloud.camera_to_world().translation - cloud.origin();
+std::size_t middle_point(const AnyBody& cloud) {
+  const Vec3 camera = cloud.to_world().translation - cloud.origin();
   const std::size_t count = cloud.positions().size();
   std::vector<std::size_t> around;
   for (std::size_t k = count * 2 / 5; k < count * 3 / 5; ++k) around.push_back(k);
@@ -62,11 +62,11 @@ std::size_t middle_point(const PreparedCloud& cloud) {
 }
 
 // Returns a path in and out of the surface twice a period, wandering over it and turning.
-TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double seconds) {
+TimedPath haptic_path(const AnyBody& cloud, const ToolModel& tool, double seconds) {
   constexpr double kPeriod = 2.5, kPosesPerSecond = 100, kWander = 0.05;  // s, 1/s, m
   const std::size_t at = middle_point(cloud);
   const Vec3 place = cloud.origin() + widen(cloud.positions()[at]);
-  const Vec3 n = normalized_or_zero(cloud.camera_to_world().translation - place);
+  const Vec3 n = normalized_or_zero(cloud.to_world().translation - place);
   const Vec3 side =
       normalized_or_zero(cross(n, std::abs(n.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
   std::vector<double> times;
@@ -86,7 +86,7 @@ TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double 
 // Returns the path through the stream, placed by its first frame.
 SampledPath path_through(const Stream& stream, const ToolModel& tool, double seconds) {
   FrameReader reader(stream.recording, stream.import);  // the CPU reads its cloud here
-  return SampledPath(haptic_path(*prepare_frame(reader, 0).cloud, tool, seconds), kRate);
+  return SampledPath(haptic_path(*prepare_frame(reader, 0).body, tool, seconds), kRate);
 }
 
 // Results of one pass over the stream.
@@ -118,9 +118,7 @@ Pass pass_over(const Stream& stream, const SampledPath& path, ToolQuery& query) 
       pass.prepare_ms.push_back(1e3 * change->seconds);
     }
     clock.begin_step();
-    const DepthFrame* const frame = feed.depth_frame();
-    const Result result =
-        frame != nullptr ? query.run(*frame, path.pose(k)) : query.run(feed.cloud(), path.pose(k));
+    const Result result = query.run(feed.body(), path.pose(k));
     clock.end_step();
     if (k % kProfileEvery == 0) pass.profile.push_back(result.volume_fraction);
   }
@@ -191,8 +189,7 @@ std::string soak_round(const Stream& stream, FrameReader& reader, const SampledP
   for (std::size_t f = 0; f < frames; ++f) {
     const PreparedChange frame = prepare_frame(reader, f);
     for (std::size_t k = f * path.steps() / frames; k < (f + 1) * path.steps() / frames; ++k)
-      hash.add(frame.depth ? query.run(*frame.depth, path.pose(k))
-                           : query.run(*frame.cloud, path.pose(k)));
+      hash.add(query.run(*frame.body, path.pose(k)));
   }
   return hash.value();
 }
@@ -218,10 +215,9 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, so it shows a leak of frames
-  ToolQuery query(tool.model, {.level = tool.soak_level,
-                               .device = suite.device,
-                               .coherent = !suite.device.is_cuda(),
-                               .counts_points = true});
+  ToolQuery query(
+      tool.model,
+      {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
   FrameReader reader(stream.recording, stream.import, stream.device);
   const std::string hash = soak_round(stream, reader, path, query);
   const double before = resident_memory_mb();

@@ -80,7 +80,7 @@ std::vector<Path> make_paths() {
   return paths;
 }
 
-void follow_solid(const Path& path, const std::vector<Pose>& along, const PreparedCloud& cloud,
+void follow_solid(const Path& path, const std::vector<Pose>& along, const AnyBody& cloud,
                   const PackedSolid& tool, std::uint32_t level, const Device& device,
                   SilhouetteResult& result) {
   const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
@@ -115,11 +115,12 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
   for (const Pose& pose : along)
     unseen.push_back(unseen_parts(tool.places, pose, *path.scene.surface, sights));
   const auto truth = truth_along(tool.solid, along, *path.scene.surface);
-  const PreparedCloud cloud(make_cloud(path.depth, path.scene.camera, NormalOptions{}));
+  const AnyBody cloud(make_cloud(path.depth, path.scene.camera, NormalOptions{}));
 
   SilhouetteResult result{.path = path.name};
   for (const Measure measure : {Measure::refined, Measure::paper}) {
-    ToolQuery query(tool.model, {.measure = measure, .level = level, .device = device});
+    ToolQuery query(tool.model,
+                    {.measure = measure, .level = level, .device = device_for(measure, device)});
     std::vector<Result> measured;
     for (const Pose& pose : along) {
       measured.push_back(query.run(cloud, pose));

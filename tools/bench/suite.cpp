@@ -9,14 +9,7 @@ namespace vpm::bench {
 namespace {
 
 // Options that only some suites take.
-enum Option : unsigned {
-  kAll = 1,
-  kMeshes = 2,
-  kData = 4,
-  kBaseline = 8,
-  kNoiseSeed = 16,
-  kOccluded = 32
-};
+enum Option : unsigned { kAll = 1, kMeshes = 2, kData = 4, kNoiseSeed = 16, kOccluded = 32 };
 
 // Where a suite's queries are computed.
 enum class Place { cpu, either, device };
@@ -33,7 +26,7 @@ constexpr Suite kSuites[] = {
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
     {"replay", run_replay, kData, Place::either},
-    {"scaling", run_scaling, kAll | kBaseline, Place::device},
+    {"scaling", run_scaling, kAll, Place::device},
     {"timing", run_timing, kData},
     {"tradeoff", run_tradeoff, 0, Place::either}};
 
@@ -62,7 +55,6 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
   check(given.all, kAll, "--all");
   check(!given.meshes.empty(), kMeshes, "--meshes");
   check(!given.data.empty(), kData, "--data");
-  check(given.baseline, kBaseline, "--baseline");
   check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
   check(given.occluded == OccludedSpace::solid, kOccluded, "--shadows");
 }

@@ -22,7 +22,6 @@ struct SuiteOptions {
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
   // accuracy --all, timing: folder of recorded depth images; replay: the same, or a recording
   std::string data = {};
-  bool baseline = false;  // scaling: the measure as printed beside it
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: seed of the noise
   OccludedSpace occluded =

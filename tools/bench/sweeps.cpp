@@ -101,7 +101,7 @@ void Sweeps::measure(const SweepCase& c, const Path& path, const std::vector<Uns
       tool.model,
       {.measure = measure,
        .level = spheres,
-       .device = device_,
+       .device = device_for(measure, device_),
        .occluded = measure == Measure::refined ? occluded_ : OccludedSpace::within_reach});
   std::vector<Result> measured;
   for (const Pose& pose : path.poses) measured.push_back(query.run(seen.cloud, pose));

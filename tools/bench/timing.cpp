@@ -123,12 +123,12 @@ class Timing {
     }
     time("cloud assembly", 0, runs_.fast,
          [&] { cloud_ = assemble_cloud(depth, scene_.camera, normals); });
-    time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
+    time("cloud preparation", 0, runs_.fast, [&] { AnyBody prepared(cloud_); });
     points_ = without_camera(cloud_);
-    time("cloud preparation, points", 0, runs_.slow, [&] { PreparedCloud prepared(points_); });
+    time("cloud preparation, points", 0, runs_.slow, [&] { AnyBody prepared(points_); });
     const auto time_frame = [&](const char* stage, Denoising points) {
       FramePreparation preparation(NormalOptions{}, points);
-      PreparedCloud frame{Cloud{}};
+      PreparedImage frame;
       time(stage, 0, runs_.fast, [&] { preparation.prepare(depth, scene_.camera, frame); });
     };
     time_frame("frame, all at once", Denoising::on);
@@ -140,8 +140,8 @@ class Timing {
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
     ToolQuery query(tool, {});
     for (const RecordedImage& image : recorded_images(options_.data)) {
-      recorded_.push_back({PreparedCloud(image.cloud),
-                           PreparedCloud(image.cloud, Denoising::off),
+      recorded_.push_back({AnyBody(image.cloud),
+                           AnyBody(image.cloud, Denoising::off),
                            without_camera(image.cloud),
                            {}});
       Recorded& room = recorded_.back();
@@ -171,13 +171,13 @@ class Timing {
     ToolModel model;
     time("graph", spheres, runs_.slow, [&] { model = build_tool_model(packing, GraphOptions{}); });
 
-    const PreparedCloud cloud(cloud_), measured(cloud_, Denoising::off), points(points_);
+    const AnyBody cloud(cloud_), measured(cloud_, Denoising::off), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
     // Places most of the tool further behind the surface than the tool's radius.
     const Pose deep{pose.rotation,
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
-    const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
+    const auto time_query = [&](const char* stage, const AnyBody& seen, const Pose& at,
                                 Measure measure = Measure::refined) {
       ToolQuery query(model, {.measure = measure});
       time(stage, spheres, runs_.fast, [&] { query.run(seen, at); });
@@ -205,11 +205,11 @@ class Timing {
           poses_in_rooms_);
     };
     time_room("query refined, recorded rooms",
-              [](const Recorded& room) -> const PreparedCloud& { return room.seen; });
+              [](const Recorded& room) -> const AnyBody& { return room.seen; });
     time_room("query refined, as measured, recorded rooms",
-              [](const Recorded& room) -> const PreparedCloud& { return room.measured; });
+              [](const Recorded& room) -> const AnyBody& { return room.measured; });
     time_room("query refined, points, recorded rooms",
-              [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
+              [](const Recorded& room) -> const AnyBody& { return *room.points; });
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
@@ -220,10 +220,10 @@ class Timing {
   static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // parts of the tool, in rooms
 
   struct Recorded {
-    PreparedCloud seen, measured;
+    AnyBody seen, measured;
     Cloud cloud;  // without camera
     std::vector<Pose> poses;
-    std::optional<PreparedCloud> points = {};
+    std::optional<AnyBody> points = {};
   };
 
   const SuiteOptions& options_;

@@ -122,7 +122,7 @@ class Tradeoff {
     return runs_.try_emplace(key, std::move(run)).first->second;
   }
 
-  const PreparedCloud& cloud(const std::string& name, const Sensing& sensing) {
+  const AnyBody& cloud(const std::string& name, const Sensing& sensing) {
     const auto key = std::tuple_cat(std::tuple(name), sensing.key());
     const auto found = clouds_.find(key);
     if (found != clouds_.end()) return found->second;
@@ -140,7 +140,7 @@ class Tradeoff {
   Errors measure(const Case& c, const ToolModel& model, const QueryOptions& query_options,
                  const Sensing& sensing, double& median_us) {
     const Run& run = path(c);
-    const PreparedCloud& seen = cloud(c.scene, sensing);
+    const AnyBody& seen = cloud(c.scene, sensing);
     ToolQuery query(model, query_options);
     query.run(seen, run.path.back());  // allocates its memory
     std::vector<Result> results;
@@ -169,7 +169,7 @@ class Tradeoff {
       QueryOptions query_options;
       query_options.measure = measured_by;
       query_options.level = spheres;
-      query_options.device = options_.device;
+      query_options.device = device_for(measured_by, options_.device);
       Measured m{what,
                  c.shape,
                  c.scene,
@@ -257,7 +257,7 @@ class Tradeoff {
       const Tool& t = tool(c.shape);
       const Rotation turned = path(c).path.front().rotation;
       const std::vector<Pose> in = make_sweep(t.solid, {turned, {}}, *scene.surface, kSteps);
-      const PreparedCloud& seen = cloud(c.scene, sensing(Noise::kinect));
+      const AnyBody& seen = cloud(c.scene, sensing(Noise::kinect));
       for (const double asked_us : {200.0, 1000.0}) {
         LevelRequest request;
         request.deadline_seconds = 1e-6 * asked_us;
@@ -282,7 +282,7 @@ class Tradeoff {
     for (const Case& c : cases_) {
       for (const Noise noise : {Noise::none, Noise::kinect}) {
         const Tool& t = tool(c.shape);
-        const PreparedCloud& seen = cloud(c.scene, sensing(noise));
+        const AnyBody& seen = cloud(c.scene, sensing(noise));
         const Pose& deepest = path(c).path.back();
         Fitted f{c.shape, c.scene, to_text(noise), {}, 0, 0, {}, {}, 0, 0, {}};
         for (const Measured& m : measured_) {
@@ -323,7 +323,7 @@ class Tradeoff {
   const int poses_;
   std::map<std::string, Tool> tools_;
   std::map<std::pair<std::string, std::string>, Run> runs_;
-  std::map<std::tuple<std::string, Noise, NormalMethod, int, std::uint32_t>, PreparedCloud> clouds_;
+  std::map<std::tuple<std::string, Noise, NormalMethod, int, std::uint32_t>, AnyBody> clouds_;
   std::vector<Measured> measured_;
   std::vector<Kept> kept_;
   std::vector<Deadline> deadlines_;

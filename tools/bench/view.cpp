@@ -47,10 +47,10 @@ View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise,
                                                   : synthetic::render_with_kinect_noise(
                                                         *scene.surface, cameras[k], noise_seed + k);
     const Cloud seen = make_cloud(depth, cameras[k], NormalOptions{});
-    if (kind == CloudKind::camera) return {cameras, PreparedCloud(seen)};
+    if (kind == CloudKind::camera) return {cameras, AnyBody(seen)};
     append(seen, points);
   }
-  return {cameras, PreparedCloud(points)};
+  return {cameras, AnyBody(points)};
 }
 
 }  // namespace vpm::bench

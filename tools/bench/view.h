@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 #include "libvpm/synthetic/scenes.h"
 
 namespace vpm::bench {
@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kNoiseSeed = 1;
 
 struct View {
   std::vector<Camera> cameras;
-  PreparedCloud cloud;
+  AnyBody cloud;
 };
 
 // Renders the scene and returns its cloud. Normals are estimated from the images, with or without

@@ -204,7 +204,7 @@ CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& 
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
 SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
-  const PreparedCloud cloud(read_cloud(a.for_scene));
+  const AnyBody cloud(read_cloud(a.for_scene));
   const double size = bounding_radius(solid, mass_properties(solid).center_of_mass);
   const SceneScale scale = scene_scale(cloud, size, std::nullopt);
   a.min_radius = std::max(a.min_radius, scale.smallest_radius());

@@ -17,6 +17,8 @@ struct GoneOption {
 };
 
 constexpr GoneOption kGone[] = {
+    {"--count-points", "--measure paper counts them"},
+    {"--no-points", "points are counted by --measure paper only"},
     {"--reuse", "a coarser --level trades accuracy for speed"},
     {"--standby-us", "a device no longer stands by between poses, and results are the same"},
 };
@@ -29,7 +31,7 @@ void declare_gone_options(CLI::App& app) {
       throw Error(ErrorKind::invalid_argument,
                   std::string(gone.name) + " is gone: leave it out; " + gone.reason);
     };
-    app.add_option_function<std::string>(gone.name, refuse_it)->group("");
+    app.add_option_function<std::string>(gone.name, refuse_it)->expected(0, 1)->group("");
   }
 }
 
@@ -58,11 +60,6 @@ void declare_measure(CLI::App& app, Arguments& a) {
                  "it shows, or all: solid")
       ->check(CLI::IsMember({"near", "solid"}))
       ->capture_default_str();
-  app.add_flag("--count-points", a.count_points,
-               "Count the cloud's points in spheres into the field points: slower with many "
-               "spheres. --measure paper counts them anyway");
-  app.add_flag("--no-points", a.no_points,
-               "Has no effect: points are counted only with --count-points or --measure paper");
   app.add_flag("--raw-points", a.raw_points,
                "Take points as they were measured: a cloud is ready sooner, without a camera in a "
                "tenth of the time, but noise errs more, and without a camera edges and thin plates "

@@ -31,8 +31,7 @@ struct Arguments {
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us, stiffness;
-  bool for_scene = false, coherent = false, count_points = false, raw_points = false;
-  bool no_points = false;  // accepted, but has no effect
+  bool for_scene = false, coherent = false, raw_points = false;
   std::string coupling;
   std::size_t batch = 1;
   ReplayArguments replay;

@@ -13,9 +13,10 @@ namespace {
 
 // Returns the surface of a depth image, which is compared with poses; nothing for points, or for
 // another measure than the refined one.
-std::optional<DepthSurface> measured_surface(const PreparedCloud& cloud, Measure measure) {
-  if (measure != Measure::refined || !cloud.is_organised()) return std::nullopt;
-  return cloud.depth_surface();
+std::optional<DepthSurface> measured_surface(const AnyBody& cloud, Measure measure) {
+  const auto* const image = cloud.as<DepthBody>();
+  if (measure != Measure::refined || image == nullptr) return std::nullopt;
+  return image->surface();
 }
 
 }  // namespace

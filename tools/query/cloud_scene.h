@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 #include "libvpm/setup/cloud_checks.h"
 #include "tools/query/query_setup.h"
 
@@ -18,7 +18,7 @@ class CloudScene {
   // cloud and tools let doubt.
   explicit CloudScene(QuerySetup& setup);
 
-  const PreparedCloud& cloud() const { return *cloud_; }
+  const AnyBody& cloud() const { return *cloud_; }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
   // Shows the answer at a pose of the k-th tool to the checks.
@@ -28,7 +28,7 @@ class CloudScene {
 
  private:
   const QuerySetup& setup_;
-  std::optional<PreparedCloud> cloud_;
+  std::optional<AnyBody> cloud_;
   std::optional<CloudChecks> checks_;
   bool has_said_ = false;
   double prepare_seconds_ = 0;

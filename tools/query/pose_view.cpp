@@ -86,13 +86,12 @@ void PoseView::add(std::size_t tool, const Pose& pose, const Result& result,
   if (tool + 1 == models_.size()) keep(std::move(current_));
 }
 
-void PoseView::add_batch(ToolQuery& query, const PreparedCloud& cloud,
-                         std::span<const Pose> poses) {
+void PoseView::add_batch(ToolQuery& query, const AnyBody& cloud, std::span<const Pose> poses) {
   ToolQuery* const only = &query;
   add_batch(std::span(&only, 1), cloud, poses);
 }
 
-void PoseView::add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
+void PoseView::add_batch(std::span<ToolQuery* const> queries, const AnyBody& cloud,
                          std::span<const Pose> poses) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (!keeps_next() && k + 1 < poses.size()) {

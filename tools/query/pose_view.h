@@ -34,8 +34,8 @@ class PoseView {
   void add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query);
   // Adds poses that were answered together. Queries those that are kept, and the last one, again,
   // since a batch leaves no states of spheres.
-  void add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses);
-  void add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
+  void add_batch(ToolQuery& query, const AnyBody& cloud, std::span<const Pose> poses);
+  void add_batch(std::span<ToolQuery* const> queries, const AnyBody& cloud,
                  std::span<const Pose> poses);
   // Sets the frame of the recording that the next steps see.
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }

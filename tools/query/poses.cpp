@@ -49,7 +49,7 @@ class PoseQueries {
   }
 
   QuerySetup& setup_;
-  const PreparedCloud& cloud_;
+  const AnyBody& cloud_;
   CloudScene& scene_;
   file::Output& output_;
   LevelToolQuery query_;

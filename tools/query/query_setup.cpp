@@ -30,9 +30,11 @@ std::vector<ToolModel> read_models(const std::vector<std::string>& names) {
   return models;
 }
 
-// Returns the CPU for coherent poses, which no device computes, unless a device is named.
-Device device_of(const Tool& tool, bool coherent) {
-  return coherent && tool.common().device == "auto" ? Device{} : tool.device();
+// Returns the CPU for what no device computes (coherent poses, the measure as printed), unless a
+// device is named.
+Device device_of(const Tool& tool, const Arguments& a) {
+  const bool is_on_cpu = a.coherent || a.measure == "paper";
+  return is_on_cpu && tool.common().device == "auto" ? Device{} : tool.device();
 }
 
 QueryOptions query_options(const Tool& tool, const Arguments& a) {
@@ -42,8 +44,7 @@ QueryOptions query_options(const Tool& tool, const Arguments& a) {
   options.stiffness = a.stiffness.value_or(1);
   options.occluded = a.shadows == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach;
   options.coherent = a.coherent;
-  options.counts_points = a.count_points;
-  options.device = device_of(tool, a.coherent);
+  options.device = device_of(tool, a);
   return options;
 }
 

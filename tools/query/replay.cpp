@@ -38,7 +38,7 @@ class Replay {
 
   const SampledPath& path() const { return path_; }
   // Returns the first frame that can be used, by which levels are chosen.
-  const PreparedCloud& first_cloud() const { return *first_cloud_; }
+  const AnyBody& first_body() const { return *first_body_; }
 
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen.
@@ -49,12 +49,12 @@ class Replay {
   SceneSource source() const;
   CheckedScene scene_of(std::size_t frame) const;
   CheckedScene first_scene() const {
-    return checked_scene(first_cloud_->origin(), first_cloud_->positions(), first_camera_);
+    return checked_scene(first_body_->origin(), first_body_->positions(), first_camera_);
   }
 
   // Returns the last pose of the tool. The values from here on need run().
   const Pose& last_pose() const { return last_pose_; }
-  const PreparedCloud& last_cloud() const { return feed_->cloud(); }
+  const AnyBody& last_body() const { return feed_->body(); }
   // Returns the time of each query, s.
   const std::vector<double>& query_seconds() const { return query_seconds_; }
   // Returns the median time of preparing a frame, s.
@@ -66,7 +66,7 @@ class Replay {
   void note_sources() const;
   void warn_of_improbable_times() const;
   double start_time() const;
-  void find_first_cloud();
+  void find_first_body();
   void say(const PreparedChange& change);
   void compare_size(const PreparedChange& change);
   void say_at_end() const;
@@ -84,7 +84,7 @@ class Replay {
   Device device_;
   Denoising points_;
   ScheduleOptions schedule_;
-  std::unique_ptr<const PreparedCloud> first_cloud_;
+  std::optional<AnyBody> first_body_;
   std::unique_ptr<FrameFeed> feed_;
   std::optional<LoopClock> clock_;
   Pose last_pose_;
@@ -148,7 +148,7 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
   }
   note_sources();
   schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
-  find_first_cloud();
+  find_first_body();
 }
 
 void Replay::note_sources() const {
@@ -196,7 +196,7 @@ double Replay::start_time() const {
   return path.start();
 }
 
-void Replay::find_first_cloud() {
+void Replay::find_first_body() {
   FrameSchedule schedule(recording_, schedule_);
   FrameReader reader(recording_, import_, {}, points_);
   std::string why = "none comes before the path ends";
@@ -209,8 +209,8 @@ void Replay::find_first_cloud() {
     PreparedChange prepared = reader.prepare(std::move(*change));
     if (!prepared.unusable.empty()) why = prepared.unusable.back().message;
     first_camera_ = prepared.camera;
-    first_cloud_ = std::move(prepared.cloud);
-    if (!first_cloud_) continue;
+    first_body_ = std::move(prepared.body);
+    if (!first_body_) continue;
     tools::say(tool_, recording_.frames[prepared.frame].path, prepared.remarks);
     return;
   }
@@ -221,9 +221,7 @@ CoupledStep Replay::ask(std::size_t k, LevelToolQuery& query,
                         std::optional<VirtualCoupling>& coupling) const {
   CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
   step.tool = coupling ? coupling->tool() : step.device;
-  const DepthFrame* const frame = feed_->depth_frame();
-  step.contact =
-      frame != nullptr ? query.run(*frame, step.tool) : query.run(feed_->cloud(), step.tool);
+  step.contact = query.run(feed_->body(), step.tool);
   if (coupling) {
     step.rendered = coupling->advance(step.device, step.contact.wrench);
     step.energy = coupling->energy();
@@ -362,7 +360,7 @@ void run_frames(QuerySetup& setup) {
       parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
   Replay replay(setup.tool, a.replay, rate, setup.options.device, setup.points);
   const Pose first = replay.path().pose(0);
-  LevelToolQuery query(model, setup.options, setup.level, replay.first_cloud(), first);
+  LevelToolQuery query(model, setup.options, setup.level, replay.first_body(), first);
   note_scale(setup.tool, query);
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
@@ -381,7 +379,7 @@ void run_frames(QuerySetup& setup) {
   if (missing && !sizes) say(setup.tool, {*missing});
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
-  stats["cloud_points"] = replay.last_cloud().positions().size();
+  stats["cloud_points"] = replay.last_body().positions().size();
   stats["replay"] = replay.report(a.deadline_us ? 1e-6 * *a.deadline_us : 1 / rate);
   add_level(stats, query);
   write_last_spheres(setup, query, replay.last_pose());

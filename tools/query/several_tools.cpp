@@ -67,7 +67,7 @@ class SeveralTools {
   }
 
   QuerySetup& setup_;
-  const PreparedCloud& cloud_;
+  const AnyBody& cloud_;
   CloudScene& scene_;
   std::deque<LevelToolQuery> queries_;
   std::vector<ToolQuery*> together_;

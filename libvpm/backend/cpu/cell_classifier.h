@@ -2,11 +2,8 @@
 // cells, since the class of a ball holds for all balls in it.
 #pragma once
 
-#include <atomic>
-
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/backend/cpu/cell_states.h"
-#include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/core/parallel.h"
 
 namespace vpm {
@@ -14,26 +11,18 @@ namespace vpm {
 template <class Surface>
 class CellClassifier {
  public:
-  // Counts the cloud's points in ambiguous spheres with `points`; null where nobody asks for them.
-  CellClassifier(const PoseWork<Surface>& work, const PointsOfSphere* points)
-      : work_(work), points_(points) {}
+  explicit CellClassifier(const PoseWork<Surface>& work) : work_(work) {}
 
-  // Classifies all cells and returns the number of points in spheres.
-  std::uint32_t run(ParallelRegion& region) {
-    std::atomic<std::uint32_t> found{0};
+  void run(ParallelRegion& region) {
     region.loop(work_.level.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
-      std::uint32_t found_here = 0;
-      for (std::size_t g = begin; g < end; ++g)
-        found_here += classify_group(static_cast<std::uint32_t>(g));
-      if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
+      for (std::size_t g = begin; g < end; ++g) classify_group(static_cast<std::uint32_t>(g));
     });
-    return found;
   }
 
  private:
   using BallClass = typename Surface::BallClass;
 
-  std::uint32_t classify_group(std::uint32_t index) {
+  void classify_group(std::uint32_t index) {
     const CellGroup& group = work_.level.groups()[index];
     const Vec3 center = work_.to_surface * group.ball.center;
     const bool tells =
@@ -42,25 +31,27 @@ class CellClassifier {
     if (tells) in_ball = work_.surface.classify_ball(center, group.ball.reach);
     if (tells && in_ball.side == Side::free) {
       work_.states.set(group.ball, CellClass::free, FloodState::closed);
-      return 0;
+      return;
     }
-    std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const CellCluster& part = work_.level.cluster(root);
       if (tells && is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.reach))
         work_.states.set(part, CellClass::free, FloodState::closed);
       else
-        found += classify(root);
+        classify(root);
     }
-    return found;
   }
 
-  std::uint32_t classify(std::uint32_t root) {
+  void classify(std::uint32_t root) {
     const CellCluster& whole = work_.level.cluster(root);
     const Vec3 center = work_.to_surface * whole.center;
     const BallClass in_ball = work_.surface.classify_ball(center, whole.reach);
-    const ClusterClass found =
+    ClusterClass found =
         class_of_cluster(work_.surface, in_ball, center, whole.reach, work_.reach.length);
+    // A flood asks the middle only where it comes.
+    if (Surface::kTellsInside && found == ClusterClass::by_middle)
+      found = class_by_middle(work_.surface, work_.surface.sample(center), center, whole.reach,
+                              work_.reach.length);
     if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
       if (!finds_cluster_plane(work_.surface, in_ball, center, whole.reach, work_.reach.length,
@@ -73,15 +64,14 @@ class CellClassifier {
       work_.push(whole, root, work_.surface.sample(center));
     else
       work_.states.set(whole, found);
-    return 0;
   }
 
   // Classifies the cells of a cluster that the surface cuts otherwise than as one plane.
-  std::uint32_t classify_nodes(std::uint32_t root) {
+  void classify_nodes(std::uint32_t root) {
     SamplesOnHost<Surface> samples;
     const std::vector<CellTreeNode>& nodes = work_.level.nodes();
     const std::uint32_t first = work_.level.roots()[root], last = nodes[first].next;
-    std::uint32_t found = 0, node = first;
+    std::uint32_t node = first;
     while (node < last) {
       const auto& [part, next] = nodes[node];
       const Vec3 center = work_.to_surface * part.center;
@@ -94,14 +84,13 @@ class CellClassifier {
         continue;
       }
       if (next == node + 1) {
-        for (std::uint32_t i = part.begin; i < part.end; ++i) found += classify_cell(i, samples);
+        for (std::uint32_t i = part.begin; i < part.end; ++i) classify_cell(i, samples);
       }
       ++node;
     }
-    return found;
   }
 
-  std::uint32_t classify_cell(std::uint32_t i, SamplesOnHost<Surface>& samples) {
+  void classify_cell(std::uint32_t i, SamplesOnHost<Surface>& samples) {
     const CellView view = work_.level.cell(i);
     const Vec3 center = work_.to_surface * view.center;
     const BallClass in_ball = work_.surface.classify_ball(center, view.reach);
@@ -115,14 +104,12 @@ class CellClassifier {
     } else {
       work_.states.results[i] = work_.measure_of(view).run(samples, in_ball.point);
       take_result(i, FloodState::unknown);
-      return points_ != nullptr ? count_points(i, center) : 0;
     }
-    return 0;
   }
 
   // Classifies the cells of a cluster that is cut by one plane. A node wholly on one side of the
   // plane decides for all its cells.
-  std::uint32_t classify_clipped(std::uint32_t root, const BallClass& in_ball) {
+  void classify_clipped(std::uint32_t root, const BallClass& in_ball) {
     constexpr double kRounding = 1e-9;  // in tool radii: far above rounding
     const ClipPlane& plane = work_.states.planes[root];
     const std::vector<CellTreeNode>& nodes = work_.level.nodes();
@@ -147,7 +134,6 @@ class CellClassifier {
         ++node;
       }
     }
-    return count_points(work_.level.cluster(root), in_ball);
   }
 
   void classify_clipped(std::uint32_t i, const ClipPlane& plane, const BallClass& in_ball) {
@@ -175,35 +161,11 @@ class CellClassifier {
 
   // Sets the class of a measured cell; an uncut one that is partly inside gets `flood_state`.
   void take_result(std::uint32_t i, FloodState flood_state) {
-    const CellResult& result = work_.states.results[i];
-    if (result.plane.count > 0)
-      work_.states.set(i, CellClass::cut, FloodState::closed);
-    else if (result.sum.volume.value > 0 || result.is_far)
-      work_.states.set(i, CellClass::partial, flood_state);
-    else
-      work_.states.set(i, CellClass::free, FloodState::closed);
-  }
-
-  // Counts points in the spheres of a cluster that was classified.
-  std::uint32_t count_points(const CellCluster& cluster, const BallClass& in_ball) const {
-    if (points_ == nullptr) return 0;
-    std::uint32_t found = 0;
-    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-      const Vec3 center = work_.center(i);
-      if (may_touch(work_.surface, in_ball, center, work_.level.radius(i)))
-        found += count_points(i, center);
-    }
-    return found;
-  }
-  std::uint32_t count_points(std::uint32_t i, Vec3 center) const {
-    const BallClass in_ball = work_.surface.classify_ball(center, work_.level.radius(i));
-    return in_ball.side == Side::ambiguous
-               ? points_->count(work_.tool.spheres[work_.level.sphere(i)], in_ball)
-               : 0;
+    const CellClass found = class_of_result(work_.states.results[i]);
+    work_.states.set(i, found, found == CellClass::partial ? flood_state : FloodState::closed);
   }
 
   PoseWork<Surface> work_;
-  const PointsOfSphere* points_;
 };
 
 }  // namespace vpm

@@ -126,7 +126,6 @@ struct CellStates {
 // Bundles what the steps of a query know of its pose.
 template <class Surface>
 struct PoseWork {
-  const ToolModel& tool;
   ToolReach reach;
   const SpatialLevel& level;
   const Surface& surface;

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "libvpm/backend/cpu/cell_states.h"
+#include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/measure/flood_rules.h"
-#include "libvpm/temporal/pose_memory.h"
 
 namespace vpm {
 
@@ -291,13 +291,15 @@ class InsideFlood {
       work_.states.cells[j] = CellClass::whole;
     }
     work_.states.squared_gaps[j] = squared_gap(on_surface);
-    if (!is_hidden_cell(work_.states.squared_gaps[j], work_.reach.length)) return FloodState::open;
-    return cut_.nearest_to(j, part.last_cut).is_behind(at) ? FloodState::open : FloodState::closed;
+    const bool is_hidden = is_hidden_cell(work_.states.squared_gaps[j], work_.reach.length);
+    return passes(is_hidden, [&] { return cut_.nearest_to(j, part.last_cut).is_behind(at); })
+               ? FloodState::open
+               : FloodState::closed;
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {
-    return lies_near_sheet(squared_gap_of(row), work_.level.reach(cut), work_.level.reach(row)) ||
-           cut_.at(cut).is_behind(work_.center(row));
+    return vpm::enters(squared_gap_of(row), work_.level.reach(cut), work_.level.reach(row),
+                       [&] { return cut_.at(cut).is_behind(work_.center(row)); });
   }
   double squared_gap_of(std::uint32_t row) {
     if (work_.states.flood_states[row] == FloodState::planar) {

@@ -14,28 +14,29 @@ PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level) : tool_(to
   next_front_.reserve(level.sphere_count);
 }
 
-Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,
-                         std::vector<SphereState>& states) {
-  std::fill(contacts_.begin(), contacts_.end(), PaperContact{});
-  std::fill(states.begin(), states.end(), SphereState::outside);
-  const std::uint32_t points = gather(cloud, pose);
-  find_boundary(states);
-  enter(states);
-  flood(states);
-  Result result = total(pose, states);
-  result.points = points;
-  return result;
-}
-
 // Adds the points strictly inside each sphere, and their caps (steps 1 and 2).
-std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose) {
+template <class Points>
+std::uint32_t PaperMeasure::gather(const Points& points, const Pose& pose) {
   const Rotation to_tool = transpose(pose.rotation);
   const auto add = [&](std::uint32_t i, std::uint32_t point, Vec3 x) {
     const Sphere& s = tool_.spheres[i];
-    const Vec3 n = to_tool * widen(cloud.normals()[point]);
+    const Vec3 n = to_tool * widen(points.normals()[point]);
     PaperContact::of_point(s, x, n).add_to(contacts_[i], add_atomically);
   };
-  return for_points_inside(cloud, tool_, level_, pose, ranges_, add);
+  return for_points_inside(points, tool_, level_, pose, ranges_, add);
+}
+
+BodySum PaperMeasure::run(const AnyBody& body, const Pose& pose, std::vector<SphereState>& states) {
+  std::fill(contacts_.begin(), contacts_.end(), PaperContact{});
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  const std::uint32_t points =
+      body.visit([&](const auto& one) { return gather(one.prepared(), pose); });
+  find_boundary(states);
+  enter(states);
+  flood(states);
+  BodySum result = total(states);
+  result.points = points;
+  return result;
 }
 
 // Marks spheres with a point in them as boundary, with the mean normal of their points (step 3).
@@ -99,20 +100,18 @@ void PaperMeasure::flood(std::vector<SphereState>& states) {
 }
 
 // Sums the spheres (step 6).
-Result PaperMeasure::total(const Pose& pose, const std::vector<SphereState>& states) const {
+BodySum PaperMeasure::total(const std::vector<SphereState>& states) const {
   const ToolMeasures measures = measures_of(tool_);
-  ToolSum sum;
-  Result result;
+  BodySum result;
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
     if (states[i] == SphereState::boundary) {
-      add_boundary(measures, tool_.spheres[i], contacts_[i], normals_[i], sum);
+      add_boundary(measures, tool_.spheres[i], contacts_[i], normals_[i], result.sum);
       ++result.boundary;
     } else if (states[i] == SphereState::inside) {
-      add_inside(measures, tool_.spheres[i], normals_[i], sum);
+      add_inside(measures, tool_.spheres[i], normals_[i], result.sum);
       ++result.inside;
     }
   }
-  sum.write(tool_, pose.rotation, result);
   return result;
 }
 

@@ -8,8 +8,10 @@
 #include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/include/vpm/query_types.h"
+#include "libvpm/measure/body_sum.h"
 #include "libvpm/measure/paper_contact.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/scene/any_body.h"
 
 namespace vpm {
 
@@ -18,17 +20,18 @@ class PaperMeasure {
   PaperMeasure(const ToolModel& tool, const Level& level);
 
   // Fills `states`, which has one entry per sphere. Allocates nothing after the first call.
-  Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
+  BodySum run(const AnyBody& body, const Pose& pose, std::vector<SphereState>& states);
 
  private:
-  std::uint32_t gather(const PreparedCloud& cloud, const Pose& pose);
+  template <class Points>
+  std::uint32_t gather(const Points& points, const Pose& pose);
   void find_boundary(std::vector<SphereState>& states);
   void flood(std::vector<SphereState>& states);
   void enter(std::vector<SphereState>& states);
-  Result total(const Pose& pose, const std::vector<SphereState>& states) const;
+  BodySum total(const std::vector<SphereState>& states) const;
 
   // The sums of a contact can count all points.
-  static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << PaperContact::kPointBits);
+  static_assert(kMaxPoints <= std::size_t{1} << PaperContact::kPointBits);
 
   const ToolModel& tool_;
   const Level& level_;

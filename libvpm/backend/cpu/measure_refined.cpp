@@ -3,25 +3,34 @@
 #include <algorithm>
 
 namespace vpm {
+namespace {
+
+// Searches in points begin near the tool.
+template <class Surface>
+void enter_near(Surface&, Vec3, double) {}
+void enter_near(DiskSurface& disks, Vec3 center, double radius) {
+  disks.feet.enter_near(center, radius);
+}
+
+}  // namespace
+
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
     : tool_(tool),
       reach_(tool.reach, options.occluded),
-      counts_points_(options.counts_points),
       level_(tool, level),
-      cells_(level_) {
-  if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
-}
+      cells_(level_),
+      is_coherent_(options.coherent) {}
 
-Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
-  const PointsOfSphere of_cloud(cloud, pose);
-  const PointsOfSphere* const points = counts_points_ ? &of_cloud : nullptr;
-  if (cloud.is_organised())
-    return run_on(cloud.depth_surface(), cloud.camera_to_world(), pose, points);
+BodySum RefinedMeasure::run(const AnyBody& body, const Pose& pose, std::size_t place) {
   constexpr double kPlaces = 1.25;  // in tool radii: holds most sampled places
-  DiskSurface disks = cloud.disk_surface();
-  disks.feet.enter_near(pose * tool_.center_of_mass - cloud.origin(), kPlaces * tool_.reach);
-  return run_on(disks, Pose{{}, cloud.origin()}, pose, points);
+  return body.visit([&](const auto& one) {
+    auto surface = one.surface();
+    const Pose& to_world = one.to_world();
+    enter_near(surface, pose_in_body(to_world, pose, tool_.center_of_mass).translation,
+               kPlaces * tool_.reach);
+    return run_on(surface, to_world, pose, place);
+  });
 }
 
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {

@@ -3,18 +3,18 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
+#include <deque>
 #include <vector>
 
 #include "libvpm/backend/cpu/cell_classifier.h"
 #include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/backend/cpu/inside_cells.h"
-#include "libvpm/backend/cpu/points_inside.h"
+#include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/include/vpm/query_types.h"
-#include "libvpm/scene/prepared_cloud.h"
-#include "libvpm/temporal/pose_memory.h"
+#include "libvpm/measure/body_sum.h"
+#include "libvpm/scene/any_body.h"
 
 namespace vpm {
 
@@ -25,36 +25,35 @@ using InsideOf =
 
 class RefinedMeasure {
  public:
-  // Uses the options about coherent poses, points and occluded space.
+  // Uses the options about coherent poses and occluded space.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
-  // With one thread, allocates nothing after the first call.
-  Result run(const PreparedCloud& cloud, const Pose& pose);
+  // Returns what a body gives, number `place` of its scene: coherent poses remember each. With one
+  // thread, allocates nothing after the first call on a scene.
+  BodySum run(const AnyBody& body, const Pose& pose, std::size_t place = 0);
 
-  // Returns the answer for one body. `to_world` maps its frame to the world's; `points` counts the
-  // points in spheres, or is null.
+  // Does so for any surface. `to_world` maps its frame to the world's.
   template <MeasuredBody Surface>
-  Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
-                const PointsOfSphere* points) {
-    ToolSum sum;
-    Result result;
-    const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
-    const PoseWork<Surface> work{tool_, reach_, level_, surface, to_surface, cells_};
+  BodySum run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
+                 std::size_t place = 0) {
+    BodySum result;
+    PoseMemory* const memory = memory_of(place);
+    const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
+    const PoseWork<Surface> work{reach_, level_, surface, to_surface, cells_};
     ParallelRegion region;
-    result.points = CellClassifier(work, points).run(region);
+    CellClassifier(work).run(region);
     CutCells cut(tool_, level_, to_surface, cells_);
     cut.list();
     InsideOf<Surface> inside(work, cut);
     inside.run(region);
-    if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
+    if (memory != nullptr && cut.are_none()) inside.run_from(*memory, to_world);
     result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
-    result.inside = add_up(work, inside, region, sum);
-    sum.write(tool_, pose.rotation, result);
-    if (!memory_) return result;
+    result.inside = add_up(work, inside, region, result.sum);
+    if (memory == nullptr) return result;
     if (result.boundary + result.inside > 0)
-      remember(work, to_world, inside);
+      remember(work, to_world, inside, *memory);
     else
-      memory_->turn();  // in free space there is nothing to look for
+      memory->turn();  // in free space there is nothing to look for
     return result;
   }
 
@@ -63,10 +62,16 @@ class RefinedMeasure {
 
   // Measures the next pose of a coherent sequence alone.
   void forget() {
-    if (memory_) memory_->forget();
+    for (PoseMemory& memory : memories_) memory.forget();
   }
 
  private:
+  // Returns the memory of a body, or null unless poses are coherent.
+  PoseMemory* memory_of(std::size_t place) {
+    if (!is_coherent_) return nullptr;
+    while (memories_.size() <= place) memories_.emplace_back(level_.size(), level_.roots().size());
+    return &memories_[place];
+  }
   // Adds cut cells and those that `inside` has taken; returns how many of the latter count. The
   // others become free: they were hidden, not inside.
   template <class Surface>
@@ -97,7 +102,7 @@ class RefinedMeasure {
     for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
       const ToolSum part = sum_of(work, inside, i, last_cut);
       sum.add(part);
-      if (part.volume.value != 0)
+      if (counts(part))
         ++count;
       else
         cells_.cells[i] = CellClass::free;  // hidden, not inside
@@ -122,34 +127,33 @@ class RefinedMeasure {
     if (partial) {
       sum = cells_.results[row].sum;
       measure.add_far(supports, sum);
-    } else if (is_compact(level_.reach(row), reach_.length)) {
-      measure.add_whole_piece(supports, piece_of(level_.mass(row), view), sum);
     } else {
-      sum = measure.whole(supports);
+      sum = measure.whole(supports, level_.mass(row));
     }
     return sum;
   }
 
   // Remembers the cells that are cut and inside for the next pose.
   template <class Surface>
-  void remember(const PoseWork<Surface>& work, const Pose& to_world, InsideOf<Surface>& inside) {
-    inside.begin_to_remember(to_world, *memory_);
+  void remember(const PoseWork<Surface>& work, const Pose& to_world, InsideOf<Surface>& inside,
+                PoseMemory& memory) {
+    inside.begin_to_remember(to_world, memory);
     const auto keep_cluster = [&](std::uint32_t root) {
       const CellCluster& cluster = level_.cluster(root);
       for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
         if (!cells_.counts(i)) continue;
-        const bool is_known = memory_->is_known(root);
+        const bool is_known = memory.is_known(root);
         if (!is_known || !inside.follows(i)) {
           const SurfaceSample on_surface = work.surface.sample(work.center(i));
           const Vec3 foot = to_world * on_surface.foot;
           if (!on_surface.known || !inside.is_sure(i, foot)) continue;
-          if (!is_known) memory_->remember(root, cluster, foot);
+          if (!is_known) memory.remember(root, cluster, foot);
         }
         if (inside.all_follow()) {
-          memory_->remember_if(cluster, [&](std::uint32_t k) { return cells_.counts(k); });
+          memory.remember_if(cluster, [&](std::uint32_t k) { return cells_.counts(k); });
           return;
         }
-        memory_->remember(i);
+        memory.remember(i);
       }
     };
     for (std::uint32_t i = next_busy(cells_.cells, 0, level_.size()); i < level_.size();) {
@@ -157,15 +161,15 @@ class RefinedMeasure {
       keep_cluster(root);
       i = next_busy(cells_.cells, level_.cluster(root).end, level_.size());
     }
-    memory_->turn();
+    memory.turn();
   }
 
   const ToolModel& tool_;
   ToolReach reach_;
-  bool counts_points_;
   SpatialLevel level_;
   CellStates cells_;
-  std::optional<PoseMemory> memory_;
+  bool is_coherent_;
+  std::deque<PoseMemory> memories_;  // for each body of the scene, if poses are coherent
 };
 
 }  // namespace vpm

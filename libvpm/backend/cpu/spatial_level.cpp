@@ -66,7 +66,7 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
 
 void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
   Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_reach[sphere],
-            tool.spheres[sphere].radius, static_cast<std::uint32_t>(blocks_.size()), 0};
+            static_cast<std::uint32_t>(blocks_.size()), 0};
   for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
     CellBlock block = level.blocks[b];
     const auto begin = static_cast<std::uint32_t>(samples_.size());

@@ -34,7 +34,6 @@ class SpatialLevel {
             row_cell.end,   row_cell.center,      row_cell.reach};
   }
   double reach(std::uint32_t row) const { return cells_[row].reach; }
-  double radius(std::uint32_t row) const { return cells_[row].radius; }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
   std::span<const std::uint32_t> neighbors(std::uint32_t row) const {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
@@ -48,7 +47,7 @@ class SpatialLevel {
  private:
   struct Cell {
     Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
-    double reach = 0, radius = 0;      // bounding radius of the cell, radius of the sphere, m
+    double reach = 0;                  // bounding radius of the cell, m
     std::uint32_t begin = 0, end = 0;  // blocks
   };
 

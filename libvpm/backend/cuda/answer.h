@@ -12,8 +12,7 @@ namespace vpm::cuda {
 
 // Holds the words of a RawResult in host memory.
 struct Answer {
-  static constexpr unsigned kWords = 18;
-  static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
+  static constexpr unsigned kWords = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t) + 1;
 
   NumberedWord words[kWords] = {};
 };

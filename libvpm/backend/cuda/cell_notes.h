@@ -13,7 +13,6 @@ namespace vpm::cuda {
 // Holds one entry per cell. All are 0 at the start of a query: many threads add to them.
 struct CellNotes {
   std::uint32_t* words = nullptr;
-  std::uint32_t* points = nullptr;  // number of the cloud's points in the sphere
   ToolSum* sums = nullptr;
   ContactPlane* planes = nullptr;  // mean planes in cut cells
 
@@ -30,7 +29,6 @@ struct CellNotes {
 #pragma unroll
       for (unsigned k = 0; k < kTogether; ++k) {
         const std::uint32_t i = first + k * step;
-        if (i < level.count) points[i] = 0;
         if (noted[k] == 0) continue;
         words[i] = 0;
         if ((noted[k] & (cell_bit::partial | cell_bit::whole | cell_bit::summed)) != 0)
@@ -309,16 +307,13 @@ class ImageSums {
   // Notes the result of a task's cell, once per thread; others may note the same cell.
   __device__ void note(const BlockTask& task, const TaskSums& found) {
     found_.sum.add(found.sum);
-    if (!found.is_cut && found.sum.volume.value == 0) return;
+    if (!found.is_cut && !counts(found.sum)) return;
     bits_added_ = cell_bit::counted | (found.is_cut ? cell_bit::cut : 0);
     word_before_ = atomicOr(&notes_.words[task.cell], bits_added_);
   }
   // Notes the plane of a cut cell.
   __device__ void note(const BlockTask& task, const ContactPlane& found) const {
     if (found.count > 0) add_atomically(found, notes_.planes[task.cell]);
-  }
-  __device__ void note_points(const BlockTask& task) const {
-    atomicOr(&notes_.words[task.cell], cell_bit::counts_points);
   }
   __device__ RawResult found() {
     count_cell(word_before_, bits_added_, found_);

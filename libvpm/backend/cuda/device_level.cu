@@ -72,13 +72,11 @@ class LevelTasks {
 
  private:
   void add_units(std::uint32_t cell, std::vector<WarpTask>& units) const {
-    const Sphere& sphere = tool_.spheres[cell];
-    const Vec3 center = sphere.center - tool_.center_of_mass;
+    const Vec3 center = tool_.spheres[cell].center - tool_.center_of_mass;
     const double reach = level_.cell_reach[cell];
     const std::uint32_t begin = level_.block_begin[cell], end = level_.block_begin[cell + 1];
     WarpTask task;
     task.balls[BlockTask::of_cell] = {center, reach};
-    task.balls[BlockTask::of_sphere] = {center, sphere.radius};
     task.cell_mass = clusters_.masses[cell];
     task.cell = cell;
     if (is_compact(reach, tool_.reach)) task.flags |= BlockTask::is_compact;
@@ -119,16 +117,6 @@ std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
 }
 
 }  // namespace
-
-double reach_of_spheres(const ToolModel& tool, const Level& level) {
-  double reach = 0;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    const Sphere& s = tool.spheres[i];
-    reach = std::max(reach, norm(s.center - tool.center_of_mass) + s.radius);
-  }
-  constexpr double kRounding = 1 + 1e-9;
-  return kRounding * reach;
-}
 
 // Adds each edge once, and for each sphere the begin of its edges to smaller indices.
 void DeviceLevel::add_edges(const SphereGraph& graph) {
@@ -171,12 +159,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpac
   view_.block_begin = memory_.copy(level.block_begin);
   view_.blocks = memory_.copy(level.blocks);
   view_.samples = memory_.copy(level.samples);
-  view_.grid = view_of(level.grid);
-  view_.grid.begin = memory_.copy(level.grid.begin);
-  view_.grid.spheres = memory_.copy(level.grid.spheres);
-  view_.center_of_mass = tool.center_of_mass;
   view_.tool_reach = {tool.reach, occluded};
-  view_.spheres_reach = reach_of_spheres(tool, level);
   add_edges(level.graph);
   add_tasks(tool, level);
 }

@@ -7,9 +7,6 @@
 
 namespace vpm::cuda {
 
-// Returns a bounding radius of a level's spheres about the centre of mass, m.
-double reach_of_spheres(const ToolModel& tool, const Level& level);
-
 class DeviceLevel {
  public:
   DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded);

@@ -2,8 +2,8 @@
 //
 // One to four threads classify each task group's cluster, more where groups are few, and sample the
 // surface at four places of a planar one. A block task of a cut cluster is classified by one to
-// four threads, which read its pixels; others by four, which classify the balls of its cell, block
-// and sphere. Work is listed as tasks in shared memory (task_measure.h).
+// four threads, which read its pixels; others by four, which classify the balls of its cell and
+// block. Work is listed as tasks in shared memory (task_measure.h).
 #pragma once
 
 #include <climits>
@@ -37,13 +37,11 @@ struct SampleByLanes : SampleInTurn {
 template <class Surface>
 class GroupMeasure {
  public:
+  using Shared = MeasureShared;  // memory of a block
+
   // Adds to `found`, this thread's sums, which are 0 before.
-  __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared,
-                          RawResult& found)
-      : work_(work),
-        counts_points_(counts_points),
-        shared_(shared),
-        tasks_(work, shared.lists, found) {}
+  __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, RawResult& found)
+      : work_(work), shared_(shared), tasks_(work, shared.lists, found) {}
 
   // Classifies the task groups of the block's part. Call from all threads.
   __device__ void run() {
@@ -210,15 +208,12 @@ class GroupMeasure {
     decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
     Side own = in_ball.side;
     if (seen.side() == Side::ambiguous) {
-      if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres matter for points only
-        in_ball = work_.surface.classify_ball(at, ball.radius);
+      if (lanes.lane < BlockTask::kBalls) in_ball = work_.surface.classify_ball(at, ball.radius);
       own = in_ball.side;
-      if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
+      if (is_cell_free(lanes, in_ball, at, ball.radius)) own = Side::free;
     }
-    const auto side_of = [&](unsigned lane) {
-      return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
-    };
-    const Side of_cell = side_of(BlockTask::of_cell), of_sphere = side_of(BlockTask::of_sphere);
+    const auto of_cell =
+        static_cast<Side>(lanes.from(static_cast<unsigned>(own), BlockTask::of_cell));
     const Side side = seen.side() == Side::ambiguous ? of_cell : seen.side();
 
     const bool samples_cell = kFloods && lanes.lane == BlockTask::of_cell && side != Side::free;
@@ -230,7 +225,7 @@ class GroupMeasure {
     if (samples_cell || samples_block) on_surface = work_.surface.sample(at, in_ball.point);
 
     double gap = 0;
-    bool hidden = false, whole = side == Side::behind;
+    bool hidden = false, whole = side == Side::behind || (!kFloods && side == Side::no_surface);
     if (kFloods) {
       gap = squared_gap(on_surface);
       hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
@@ -241,7 +236,7 @@ class GroupMeasure {
     }
     if (!active) return;
     if (lanes.lane == BlockTask::of_cell && head)
-      note_cell(task, word_of_cell(side, of_sphere, whole, hidden), gap);
+      note_cell(task, word_of_cell(side, whole, hidden), gap);
     if (lanes.lane != BlockTask::of_block) return;
     if (side == Side::ambiguous)
       add_ambiguous(task, in_ball, at, ball.radius, on_surface);
@@ -269,24 +264,20 @@ class GroupMeasure {
         tasks_.note_behind(task, plane.normal);
         if (kFloods) word = cell_bit::partial;
       }
-      if (counts_points_) {
-        const TaskBall& sphere = task.balls[BlockTask::of_sphere];
-        if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
-            Side::ambiguous)
-          word |= cell_bit::counts_points;
-      }
       note_cell(task, word, distance * distance);
     }
     if ((task.flags & BlockTask::has_block) != 0 && side == PlaneSide::cut)
       tasks_.add_clipped(task, plane);
   }
 
-  // True in the cell's lane if its ball, whose pixels all lanes read, was seen to be free.
+  // True in the cell's lane if its ball was seen to be free, though its class does not tell. All
+  // lanes read its pixels where they can.
   template <class BallClass>
-  __device__ bool is_cell_seen_past(const Subwarp& lanes, const BallClass& in_ball,
-                                    double depth) const {
-    if constexpr (SeesFreeSpace<Surface>) {
-      constexpr unsigned kCell = BlockTask::of_cell;
+  __device__ bool is_cell_free(const Subwarp& lanes, const BallClass& in_ball, Vec3 center,
+                               double radius) const {
+    constexpr unsigned kCell = BlockTask::of_cell;
+    if constexpr (SharesPixels<Surface>) {
+      const double depth = center.z + radius;
       if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
       const PixelRectangle own = Surface::pixels_of(in_ball);
       const PixelRectangle pixels{lanes.from(own.u0, kCell), lanes.from(own.v0, kCell),
@@ -294,7 +285,7 @@ class GroupMeasure {
       const double farthest = lanes.from(depth, kCell);
       return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
     } else {
-      return false;
+      return lanes.lane == kCell && side_of(work_.surface, in_ball, center, radius) == Side::free;
     }
   }
   __device__ bool is_seen_past(const Subwarp& lanes, const PixelRectangle& pixels,
@@ -302,15 +293,17 @@ class GroupMeasure {
     return !lanes.any(!work_.surface.is_seen_past(pixels, depth, lanes.lane, lanes.width));
   }
 
-  // True if a ball was seen to be free; all lanes read its pixels.
+  // True if a ball was seen to be free; all lanes read its pixels where they can.
   __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const {
     const auto in_ball = work_.surface.classify_ball(center, radius);
-    const double farthest = center.z + radius;
-    if constexpr (SeesFreeSpace<Surface>) {
-      if (work_.surface.may_be_seen_past(in_ball, farthest))
-        return is_seen_past(lanes, Surface::pixels_of(in_ball), farthest);
+    if constexpr (SharesPixels<Surface>) {
+      const double farthest = center.z + radius;
+      return work_.surface.may_be_seen_past(in_ball, farthest)
+                 ? is_seen_past(lanes, Surface::pixels_of(in_ball), farthest)
+                 : in_ball.side == Side::free;
+    } else {
+      return side_of(work_.surface, in_ball, center, radius) == Side::free;
     }
-    return in_ball.side == Side::free;
   }
 
   // Notes a cell of a uniform cluster.
@@ -323,18 +316,16 @@ class GroupMeasure {
 
   __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap) {
     const std::uint32_t i = task.cell;
-    if (!kFloods) word &= cell_bit::counts_points;
-    if (word != 0) atomicOr(&work_.notes.words[i], word);
     if (!kFloods) return;
+    if (word != 0) atomicOr(&work_.notes.words[i], word);
     work_.space.gaps[i] = gap;
     work_.space.parents[i + 1] = i + 1;
   }
 
   // Returns the word to note of a cell that is `whole` behind the surface or ambiguous; counts a
   // hidden one.
-  __device__ std::uint32_t word_of_cell(Side side, Side of_sphere, bool whole, bool hidden) const {
+  __device__ std::uint32_t word_of_cell(Side side, bool whole, bool hidden) const {
     std::uint32_t word = whole ? cell_bit::whole : 0;
-    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
     if ((whole || side == Side::ambiguous) && hidden) {
       word |= cell_bit::hidden;
       atomicAdd(&work_.counters.hidden, 1U);
@@ -360,12 +351,11 @@ class GroupMeasure {
 
   // Lists the block of a cell that counts whole, or the cell itself where it is compact.
   __device__ void add_whole(const BlockTask& task) {
-    if ((task.flags & BlockTask::is_compact) != 0) {
-      if ((task.flags & BlockTask::is_head) != 0)
-        tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
-    } else if ((task.flags & BlockTask::has_block) != 0) {
+    const WholePart part = whole_part_of(task.flags);
+    if (part == WholePart::cell)
+      tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
+    else if (part == WholePart::block)
       tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
-    }
   }
 
   // Lists a block of an ambiguous cell.
@@ -390,7 +380,6 @@ class GroupMeasure {
   }
 
   const PoseWork<Surface>& work_;
-  bool counts_points_;
   MeasureShared& shared_;
   TaskMeasure<Surface> tasks_;
 };

@@ -59,11 +59,10 @@ template <class Found>
 class ImageTaskGroup {
  public:
   // Takes the number of `lanes` per block task.
-  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, bool counts_points,
-                            const TaskBall& cluster, const WarpTask* units, unsigned lanes,
-                            ImageShared& shared, ImageSums& sums)
+  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, const TaskBall& cluster,
+                            const WarpTask* units, unsigned lanes, ImageShared& shared,
+                            ImageSums& sums)
       : work_(work),
-        counts_points_(counts_points),
         cluster_(cluster),
         lanes_(lanes),
         lane_(threadIdx.x % lanes),
@@ -92,7 +91,7 @@ class ImageTaskGroup {
 
   // Names the lanes of a task that classify its balls, and the warp's lane for the cluster's ball.
   static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
-                            kOfSphere = BlockTask::of_sphere, kOfCluster = BlockTask::kBalls;
+                            kOfCluster = BlockTask::kBalls;
 
   // Tells how a block task counts.
   enum class Counts {
@@ -129,7 +128,7 @@ class ImageTaskGroup {
 
   // Classifies all balls.
   __device__ void see_ball() {
-    const bool is_of_unit = lane_ < (counts_points_ ? kOfSphere : kOfBlock) + 1;
+    const bool is_of_unit = lane_ < BlockTask::kBalls;
     const TaskBall ball = is_of_unit ? unit_.balls[lane_] : cluster_;
     radius_ = ball.radius;
     middle_ = work_.to_surface * ball.center;
@@ -182,9 +181,6 @@ class ImageTaskGroup {
   __device__ Counts classify_clipped() {
     const TaskBall& cell = unit_.balls[kOfCell];
     const PlaneSide side = side_of_plane(plane_.distance(cell.center), cell.radius);
-    if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) &&
-        look_.side == Side::ambiguous)
-      sums_.note_points(unit_);
     const bool is_reached = side != PlaneSide::before;
     const bool may_be_free = is_reached && (seen_.cell == Side::free || seen_.asks_pixels);
     if (__any_sync(~0U, may_be_free) != 0 && is_free_in_cluster(may_be_free))
@@ -209,9 +205,6 @@ class ImageTaskGroup {
   __device__ Counts classify_alone(Side side) {
     if (side == Side::ambiguous) {
       side = side_of_cell(true);
-      if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) &&
-          side == Side::ambiguous && look_.side == Side::ambiguous)
-        sums_.note_points(unit_);
       const bool asks_block = side == Side::ambiguous && is(BlockTask::has_block);
       if (lane_ == kOfBlock && asks_block) see_block();
       __syncwarp();
@@ -231,9 +224,10 @@ class ImageTaskGroup {
       if (side == Side::ambiguous) return Counts::not_at_all;
     }
     if (side == Side::free) return Counts::not_at_all;
-    if (is(BlockTask::is_compact))
-      return is(BlockTask::is_head) ? Counts::whole_cell : Counts::not_at_all;
-    return is(BlockTask::has_block) ? Counts::whole_block : Counts::not_at_all;
+    const WholePart part = whole_part_of(flags_);
+    return part == WholePart::cell    ? Counts::whole_cell
+           : part == WholePart::block ? Counts::whole_block
+                                      : Counts::not_at_all;
   }
 
   // Returns the side of the cell; if `asks`, its pixels may show it to be free.
@@ -394,7 +388,6 @@ class ImageTaskGroup {
   }
 
   const PoseWork<DepthSurface>& work_;
-  bool counts_points_;
   const TaskBall& cluster_;
   unsigned lanes_, lane_;
   const WarpTask& unit_;
@@ -418,9 +411,8 @@ class ImageMeasure {
     alignas(ImageShared) unsigned char warps[kMostWarps][sizeof(ImageShared)];
   };
 
-  __device__ ImageMeasure(const PoseWork<DepthSurface>& work, bool counts_points, Shared& shared)
+  __device__ ImageMeasure(const PoseWork<DepthSurface>& work, Shared& shared)
       : work_(work),
-        counts_points_(counts_points),
         shared_(*reinterpret_cast<ImageShared*>(shared.warps[threadIdx.x / 32])),
         sums_(work.notes) {}
 
@@ -448,13 +440,10 @@ class ImageMeasure {
     const WarpTask* const units = all.units +
                                   (is_wide ? 0 : all.wide_count * WarpTaskGroups::kWideTasks) +
                                   (is_wide ? c : c - all.wide_count) * at_once;
-    ImageTaskGroup<Found>(work_, counts_points_, all.chunks[c].ball, units, 32 / at_once, shared_,
-                          sums_)
-        .measure();
+    ImageTaskGroup<Found>(work_, all.chunks[c].ball, units, 32 / at_once, shared_, sums_).measure();
   }
 
   const PoseWork<DepthSurface>& work_;
-  bool counts_points_;
   ImageShared& shared_;
   ImageSums sums_;
 };

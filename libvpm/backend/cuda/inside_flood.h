@@ -85,27 +85,26 @@ class UnionFind {
   std::uint32_t* parents_;
 };
 
+// Stands for the memory of a block where a step needs none.
+struct NoShared {};
+
 // Finishes a query where a camera has seen the surface. The first step has added what is behind it
 // by no more than the tool's radius; pieces further behind need the support of cut cells' planes.
 template <class Team>
 class CameraVisibility {
  public:
-  using Shared = NotedList;  // memory of a block
+  using Shared = NoShared;  // memory of a block
 
   __device__ CameraVisibility(const LevelView& level, const Pose& to_surface,
                               const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
-                              Team& team, Shared& shared, bool counts_points)
+                              Team& team, Shared&)
       : notes_(space.notes[turn % 2]),
         counters_(counters),
         team_(team),
-        noted_(level, notes_, team, shared),
-        cut_(level, to_surface, space, notes_, counters, team),
-        counts_points_(counts_points) {}
+        cut_(level, to_surface, space, notes_, counters, team) {}
 
-  // True if the first step has left `far` pieces, or points are to be counted.
-  __device__ static bool has_more(unsigned far, bool counts_points) {
-    return counts_points || far > 0;
-  }
+  // True if the first step has left `far` pieces.
+  __device__ static bool has_more(unsigned far) { return far > 0; }
   // Returns what this thread adds to the first step's result. Call from all threads of the team.
   __device__ RawResult run() {
     RawResult result;
@@ -117,14 +116,9 @@ class CameraVisibility {
           far, [](std::uint32_t) { return true; },
           [&](std::uint32_t i, const ToolSum& sum) {
             result.sum.add(sum);
-            if (sum.volume.value != 0)
+            if (counts(sum))
               count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
           });
-    }
-    if (counts_points_) {
-      noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
-        if ((word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
-      });
     }
     return result;
   }
@@ -133,9 +127,7 @@ class CameraVisibility {
   const CellNotes& notes_;
   RefinedCounters& counters_;
   Team& team_;
-  NotedCells<Team> noted_;
   CutCells<Team> cut_;
-  bool counts_points_;
 };
 
 // Bounds the cells of a level that one block floods in its own memory.
@@ -168,8 +160,7 @@ class Flood {
   using Shared = FloodBlock;
 
   __device__ Flood(const LevelView& level, const Pose& to_surface, const RefinedSpace& space,
-                   unsigned turn, RefinedCounters& counters, Team& team, FloodBlock& block,
-                   bool counts_points)
+                   unsigned turn, RefinedCounters& counters, Team& team, FloodBlock& block)
       : level_(level),
         to_surface_(to_surface),
         space_(space),
@@ -177,7 +168,6 @@ class Flood {
         counters_(counters),
         team_(team),
         shared_(block.shared),
-        counts_points_(counts_points),
         in_shared_(Team::kIsBlock && is_small(level)),
         words_(in_shared_ ? block.shared.words : notes_.words),
         flood_(space.parents),
@@ -187,7 +177,7 @@ class Flood {
   }
 
   // True if the first step, when done, has left anything.
-  __device__ static bool has_more(unsigned, bool) { return true; }
+  __device__ static bool has_more(unsigned) { return true; }
   // Returns this thread's part of the result. Call from all threads of the team.
   __device__ RawResult run() {
     const RefinedCounters found = read_for_block(counters_);
@@ -349,8 +339,8 @@ class Flood {
   }
 
   __device__ bool enters(std::uint32_t cut, std::uint32_t i) const {
-    return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) ||
-           lies_behind(cut, i);
+    return vpm::enters(space_.gaps[i], level_.reach[cut], level_.reach[i],
+                       [&] { return lies_behind(cut, i); });
   }
 
   __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t i) const {
@@ -365,7 +355,7 @@ class Flood {
       const std::uint32_t word = words_[i];
       if (!may_be_inside(word) || (word & cell_bit::hidden) == 0) continue;
       const std::uint32_t cut = cut_.nearest_to(warp, i);
-      if (cut < level_.count && warp.leads() && lies_behind(cut, i))
+      if (cut < level_.count && warp.leads() && passes(true, [&] { return lies_behind(cut, i); }))
         words_[i] = word & ~cell_bit::hidden;
     }
   }
@@ -373,8 +363,6 @@ class Flood {
   __device__ RawResult add_up_cells() {
     RawResult result;
     const auto add = [&](std::uint32_t i, std::uint32_t word) {
-      if (counts_points_ && (word & cell_bit::counts_points) != 0)
-        result.points += notes_.points[i];
       if ((word & cell_bit::cut) != 0 || may_be_inside(word)) add_cell(i, word, result);
     };
     if (in_shared_ || level_.count <= team_.threads()) {
@@ -391,7 +379,7 @@ class Flood {
   __device__ void add_cell(std::uint32_t i, std::uint32_t word, RawResult& result) const {
     const bool cut = (word & cell_bit::cut) != 0;
     const ToolSum sum = notes_.sums[i];
-    if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
+    if (!cut && !(is_inside(i, word) && counts(sum))) return;
     notes_.words[i] = word | cell_bit::counted;
     result.sum.add(sum);
     ++(cut ? result.boundary : result.inside);
@@ -404,7 +392,6 @@ class Flood {
   RefinedCounters& counters_;
   Team& team_;
   FloodShared& shared_;
-  bool counts_points_;
   bool in_shared_;
   std::uint32_t* words_;
   UnionFind flood_;  // node 0 is the entry, node i + 1 cell i

@@ -10,8 +10,8 @@ namespace vpm::cuda {
 // Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
 // limit the refined measure: fewer finish a pose sooner, more get through more poses.
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
-inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
-inline constexpr unsigned kMostThreads = 256;
+inline constexpr unsigned kMostThreads = kBatchThreads;
+static_assert(kThreads <= kMostThreads);
 
 // Returns the first of the neighbouring samples that share a direction with this lane's; `sharing`
 // has a bit for each lane.
@@ -86,10 +86,6 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   const std::int64_t sum_of_warp = Warp::add_up(mine);
   __syncthreads();
   if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
-  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom
-    const auto points = static_cast<unsigned>(Subwarp(32).sum(part.points));
-    if (lane == 0) atomicAdd(&total.points, points);
-  }
   __syncthreads();
   if (threadIdx.x > kCounts) return;
   std::int64_t sum = 0;

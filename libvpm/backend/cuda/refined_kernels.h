@@ -9,7 +9,6 @@
 #include "libvpm/backend/cuda/group_measure.h"
 #include "libvpm/backend/cuda/image_measure.h"
 #include "libvpm/backend/cuda/inside_flood.h"
-#include "libvpm/backend/cuda/points.h"
 #include "libvpm/backend/cuda/task_measure.h"
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/occupancy.h"
@@ -26,11 +25,7 @@ template <class Surface>
 struct RefinedLaunch {
   LevelView level;
   Surface surface;
-  PointsView points;
   RefinedSpace space;
-  bool counts_points = false;
-  // Counts the blocks that measure spheres; the others count points.
-  unsigned sphere_blocks = 0;
   Totals* totals = nullptr;
   RefinedCounters* counters = nullptr;
   Answer* answer = nullptr;
@@ -44,10 +39,8 @@ struct BatchLaunch {
   LevelView levels[kTools];
   unsigned ends[kTools];  // end of each tool's poses, which follow those of the tool before
   Surface surface;
-  PointsView points;
   RefinedSpace space;  // memory of the first team
   TeamRoom room;       // size of one team's memory
-  bool counts_points = false;
 };
 
 // Returns the memory of one of several teams of one block each.
@@ -57,8 +50,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
   RefinedSpace space;
   for (int turn = 0; turn < 2; ++turn) {
     const CellNotes& from = first.notes[turn];
-    space.notes[turn] = {from.words + cells, from.points + cells, from.sums + cells,
-                         from.planes + cells};
+    space.notes[turn] = {from.words + cells, from.sums + cells, from.planes + cells};
   }
   space.gaps = first.gaps + cells;
   space.parents = first.parents + cells + team;
@@ -73,56 +65,55 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
 template <class Surface, class Team>
 using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
 
+// True for a surface that small levels are measured before by a schedule of its own.
+template <class Surface>
+inline constexpr bool kHasImageSchedule = std::is_same_v<Surface, DepthSurface>;
+template <class Surface>
+using ImageSchedule =
+    std::conditional_t<kHasImageSchedule<Surface>, ImageMeasure, GroupMeasure<Surface>>;
+
 // Lays out a block's shared memory, which the steps of a query use one after another.
 template <class Surface>
 union BlockShared {
   MeasureShared measure;
-  ImageMeasure::Shared image;
+  typename ImageSchedule<Surface>::Shared image;
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
 // Runs the first step of one query by all blocks of a launch. Returns the sums of this thread.
 template <class Surface>
-__device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+__device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
                                    unsigned turn, BlockShared<Surface>& shared) {
-  const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
-  if (blockIdx.x >= launch.sphere_blocks) {
-    if (launch.counts_points)
-      count_points(launch.level, launch.points, frame,
-                   {blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks},
-                   launch.space.notes[turn % 2].points);
-    return {};
-  }
   const PoseWork<Surface> work{launch.level,
                                launch.surface,
-                               frame.to_surface,
+                               to_surface,
                                launch.space,
                                launch.space.notes[turn % 2],
                                *launch.counters,
-                               of_spheres};
-  if constexpr (Surface::kTellsInside) {
-    if (ImageMeasure::is_for(launch.level, of_spheres))
-      return ImageMeasure(work, launch.counts_points, shared.image).run();
+                               {blockIdx.x, gridDim.x}};
+  if constexpr (kHasImageSchedule<Surface>) {
+    if (ImageMeasure::is_for(launch.level, work.part))
+      return ImageMeasure(work, shared.image).run();
   }
   RawResult found;
-  GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
+  GroupMeasure<Surface>(work, shared.measure, found).run();
   return found;
 }
 
 // Notes the planes of cut cells if the first step has not; few queries need them.
 __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
-                                         const PoseFrame& frame, unsigned turn,
+                                         const Pose& to_surface, unsigned turn,
                                          BlockShared<DepthSurface>& shared) {
-  const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
-  if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
+  const BlockRange part{blockIdx.x, gridDim.x};
+  if (!ImageMeasure::is_for(launch.level, part)) return;
   const PoseWork<DepthSurface> work{launch.level,
                                     launch.surface,
-                                    frame.to_surface,
+                                    to_surface,
                                     launch.space,
                                     launch.space.notes[turn % 2],
                                     *launch.counters,
-                                    of_spheres};
-  ImageMeasure(work, launch.counts_points, shared.image).note_planes();
+                                    part};
+  ImageMeasure(work, shared.image).note_planes();
 }
 
 // Clears the notes for the next query, while nobody waits.
@@ -132,12 +123,13 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
 }
 
 // Answers one query; the last block floods alone. For levels of few cells.
+template <class Surface>
 __global__ void __launch_bounds__(kThreads, kManyBlocks)
-    one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
-                   const __grid_constant__ PoseFrame frame, unsigned sequence) {
-  __shared__ BlockShared<DiskSurface> shared;
+    one_pose_small(const __grid_constant__ RefinedLaunch<Surface> launch,
+                   const __grid_constant__ Pose to_surface, unsigned sequence) {
+  __shared__ BlockShared<Surface> shared;
   __shared__ RawResult total;
-  measure_cells(launch, frame, sequence, shared);
+  measure_cells(launch, to_surface, sequence, shared);
   if (!is_last_of(launch.totals->done, gridDim.x)) {
     clear_next(launch, sequence);
     return;
@@ -145,8 +137,8 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
   const std::uint64_t met = now();
   if (threadIdx.x == 0) total = RawResult{};
   BlockTeam team;
-  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence,
-                             *launch.counters, team, shared.inside, launch.counts_points)
+  add_block(Flood<BlockTeam>(launch.level, to_surface, launch.space, sequence, *launch.counters,
+                             team, shared.inside)
                 .run(),
             total);
   __syncthreads();
@@ -159,18 +151,18 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
 }
 
 // Answers one query by all blocks of a cooperative launch. If the first step has found all (no far
-// pieces, no points asked), the last block to arrive sends the answer.
+// pieces), the last block to arrive sends the answer.
 template <class Surface>
-__device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+__device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const RawResult found = measure_cells(launch, frame, sequence, shared);
+  const RawResult found = measure_cells(launch, to_surface, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
   unsigned far = 0;
-  const auto has_more = [&] { return Rest::has_more(far, launch.counts_points); };
+  const auto has_more = [&] { return Rest::has_more(far); };
   if (is_last) {
     const std::uint32_t word = word_of(totals->result);  // loaded while `far` is
     far = read(launch.counters->far);
@@ -183,11 +175,11 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
     far = read_for_block(*launch.counters).far;
   }
   if (has_more()) {
-    if constexpr (Surface::kTellsInside)
-      if (far > 0) note_planes(launch, frame, sequence, shared);
+    if constexpr (kHasImageSchedule<Surface>)
+      if (far > 0) note_planes(launch, to_surface, sequence, shared);
     GridTeam meeting = team;  // a copy, since a function's argument lies in memory
-    Rest rest(launch.level, frame.to_surface, launch.space, sequence, *launch.counters, meeting,
-              shared.inside, launch.counts_points);
+    Rest rest(launch.level, to_surface, launch.space, sequence, *launch.counters, meeting,
+              shared.inside);
     add_block(rest.run(), totals->result);
   }
   if (!is_last_of(totals->done, gridDim.x)) return;
@@ -202,20 +194,19 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
 template <class Surface, unsigned kBlocks>
 __global__ void __launch_bounds__(kThreads, kBlocks)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
-             const __grid_constant__ PoseFrame frame, unsigned sequence) {
+             const __grid_constant__ Pose to_surface, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
   GridTeam team(&launch.totals->arrived);
-  answer_pose(launch, frame, sequence, team, shared);
+  answer_pose(launch, to_surface, sequence, team, shared);
 }
 
 // Answers one query after another in each block.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
-    many_poses(const __grid_constant__ BatchLaunch<Surface> launch,
-               const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
-               RawResult* results) {
+    many_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,
+               unsigned count, RawResult* results) {
   __shared__ BlockShared<Surface> shared;
-  __shared__ PoseFrame frame;
+  __shared__ Pose to_surface;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
   // Keeps each thread's sums, which are seldom used, out of its registers. A flood has none.
@@ -237,23 +228,21 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     }
     const LevelView& level = launch.levels[tool];
     if (threadIdx.x == 0) {
-      frame = frame_of(poses[p], cloud, level.center_of_mass, level.spheres_reach);
+      to_surface = to_surfaces[p];
       counters = RefinedCounters{};
       total = RawResult{};
     }
     __syncthreads();
-    if (launch.counts_points)
-      count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
     const PoseWork<Surface> work{
-        level, launch.surface, frame.to_surface, space, space.notes[turn % 2], counters, {}};
+        level, launch.surface, to_surface, space, space.notes[turn % 2], counters, {}};
     found = RawResult{};
-    GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
+    GroupMeasure<Surface>(work, shared.measure, found).run();
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
-    Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
-                                      shared.inside, launch.counts_points);
-    if (inside.has_more(counters.far, launch.counts_points)) add_block(inside.run(), total);
+    Inside<Surface, BlockTeam> inside(level, to_surface, space, turn, counters, team,
+                                      shared.inside);
+    if (inside.has_more(counters.far)) add_block(inside.run(), total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
@@ -279,7 +268,7 @@ class RefinedMemory {
   // Returns the size of the memory of a team of one block, in bytes.
   static std::size_t bytes_of_team(const TeamRoom& room) {
     constexpr std::size_t kOfCell =
-        2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
+        2 * (sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
     return room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
            2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(PlanarCluster);
@@ -287,8 +276,8 @@ class RefinedMemory {
 
  private:
   CellNotes notes(std::size_t cells) {
-    return {memory_.zeros<std::uint32_t>(cells), memory_.zeros<std::uint32_t>(cells),
-            memory_.zeros<ToolSum>(cells), memory_.zeros<ContactPlane>(cells)};
+    return {memory_.zeros<std::uint32_t>(cells), memory_.zeros<ToolSum>(cells),
+            memory_.zeros<ContactPlane>(cells)};
   }
 
   DeviceMemory memory_;

@@ -1,112 +1,172 @@
 #include <algorithm>
 
+#include "libvpm/backend/cuda/answer.h"
 #include "libvpm/backend/cuda/device_level.h"
-#include "libvpm/backend/cuda/measure_on_device.h"
+#include "libvpm/backend/cuda/job_order.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
+#include "libvpm/backend/device_measure.h"
+#include "libvpm/device/cuda/occupancy.h"
+#include "libvpm/scene/cuda/cloud_slot.h"
+#include "libvpm/scene/cuda/device_bodies.h"
 
 namespace vpm::cuda {
 namespace {
 
-class RefinedOnDevice : public MeasureOnDevice {
+// Names the kernel that answers one pose before a kind of surface.
+template <class Surface>
+struct PoseKernel {
+  using Function = void (*)(RefinedLaunch<Surface>, Pose, unsigned);
+  Function function = nullptr;
+  unsigned blocks = 0;
+  bool meets = true;  // its blocks meet, so all must be resident at once
+
+  // Where a flood decides, small levels have a kernel of their own.
+  explicit PoseKernel(const LevelView& level) {
+    unsigned per_processor = kManyBlocks;
+    if constexpr (Surface::kTellsInside) {
+      const bool few = level.count <= kSpheresOfFewBlocks;
+      if (few) per_processor = kFewBlocks;
+      function = few ? one_pose<Surface, kFewBlocks> : one_pose<Surface, kManyBlocks>;
+    } else {
+      meets = !is_small(level);
+      function = meets ? one_pose<Surface, kManyBlocks> : one_pose_small<Surface>;
+    }
+    blocks = blocks_that_fit(function, kThreads, per_processor);
+  }
+};
+
+// Holds the teams that share the work of a batch.
+struct Teams {
+  Teams(unsigned teams, const TeamRoom& wanted)
+      : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
+  unsigned count;
+  TeamRoom room;
+  RefinedMemory memory;
+};
+
+// Holds the jobs of one launch, and where it takes and leaves them.
+struct Batch {
+  static constexpr std::size_t kJobs = 16384;
+
+  Batch() : poses(kJobs), results(kJobs), answers(kJobs) {}
+  DeviceArray<Pose> poses;
+  DeviceArray<RawResult> results;
+  std::vector<RawResult> answers;
+  JobOrder order;
+};
+
+class RefinedOnDevice : public DeviceMeasure {
  public:
+  // Keeps the tool by reference. The device must be the current one.
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
-      : MeasureOnDevice(tool, device),
+      : device_(device),
         level_(tool, level, options.occluded),
-        counts_points_(options.counts_points),
-        of_images_(kernel_of_images(level_.view())),
-        of_points_(kernel_of_points(level_.view())),
-        memory_(TeamRoom(level_.view()), 1, std::max(of_images_.blocks, of_points_.blocks),
-                kThreads),
+        kernels_(BodyKinds::of_surfaces<PoseKernel>(level_.view())),
+        memory_(TeamRoom(level_.view()), 1, most_blocks(), kThreads),
         totals_(1),
         counters_(1) {
     totals_.clear();
     counters_.clear();
   }
 
+  void run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
+           std::span<const BodyJob> jobs, std::span<BodySum> sums) override {
+    const CurrentDevice current(device_);
+    body.visit([&](const auto& one) { run_on(one, measures, jobs, sums); });
+  }
+  void keep_only(std::span<const AnyBody> scene) override { copies_.keep_only(scene); }
+
+  void read_states(std::vector<SphereState>& states) override {
+    const CurrentDevice current(device_);
+    check(cudaStreamSynchronize(stream_.get()));
+    std::vector<std::uint32_t> words(states.size());
+    check(cudaMemcpy(words.data(), memory_.space().notes[sequence_ % 2].words,
+                     words.size() * sizeof(std::uint32_t), cudaMemcpyDeviceToHost));
+    std::ranges::transform(words, states.begin(), [](std::uint32_t word) {
+      return (word & cell_bit::counted) == 0 ? SphereState::outside
+             : (word & cell_bit::cut) != 0   ? SphereState::boundary
+                                             : SphereState::inside;
+    });
+  }
+  double flood_microseconds() const override { return flood_microseconds_; }
+
  private:
-  // Names the kernel that answers one pose.
-  template <class Surface>
-  struct PoseKernel {
-    using Function = void (*)(RefinedLaunch<Surface>, PoseFrame, unsigned);
-    Function function = nullptr;
-    unsigned blocks = 0;
-    bool meets = true;  // its blocks meet, so all must be resident at once
-  };
-  template <class Surface>
-  static PoseKernel<Surface> kernel_of(typename PoseKernel<Surface>::Function function,
-                                       unsigned blocks, bool meets = true) {
-    return {function, blocks_that_fit(function, kThreads, blocks), meets};
-  }
-  static PoseKernel<DepthSurface> kernel_of_images(const LevelView& level) {
-    return level.count <= kSpheresOfFewBlocks
-               ? kernel_of<DepthSurface>(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
-               : kernel_of<DepthSurface>(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
-  }
-  // Returns the kernel for points without a camera: they are flooded, for which small levels have
-  // one of their own.
-  static PoseKernel<DiskSurface> kernel_of_points(const LevelView& level) {
-    return is_small(level)
-               ? kernel_of<DiskSurface>(one_pose_small, kManyBlocks, false)
-               : kernel_of<DiskSurface>(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
+  unsigned most_blocks() const {
+    return std::apply([](const auto&... kernel) { return std::max({kernel.blocks...}); }, kernels_);
   }
 
-  // Holds the teams that share the work of a batch.
-  struct Teams {
-    Teams(unsigned teams, const TeamRoom& wanted)
-        : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
-    unsigned count;
-    TeamRoom room;
-    RefinedMemory memory;
-  };
-
-  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
-    if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), of_images_, frame, answer, sequence);
-    else
-      launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
+  // Asks the copy of a body.
+  template <class Kind>
+  void run_on(const Kind& body, std::span<DeviceMeasure* const> measures,
+              std::span<const BodyJob> jobs, std::span<BodySum> sums) {
+    ask(copies_.of(body).surface(), measures, jobs, sums);
   }
-  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
-    make_room(tools);
-    if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), tools, poses, results);
-    else
-      launch_on(cloud().disk_surface(), tools, poses, results);
-  }
-  double reach() const override { return level_.view().spheres_reach; }
-  const std::uint32_t* state_words(unsigned sequence) const override {
-    return memory_.space().notes[sequence % 2].words;
-  }
-  SphereState state_of(std::uint32_t word) const override {
-    return (word & cell_bit::counted) == 0 ? SphereState::outside
-           : (word & cell_bit::cut) != 0   ? SphereState::boundary
-                                           : SphereState::inside;
+  // Asks a frame that is made on this device, else the copy of what the CPU prepares.
+  void run_on(const DepthBody& body, std::span<DeviceMeasure* const> measures,
+              std::span<const BodyJob> jobs, std::span<BodySum> sums) {
+    const auto* const slot = dynamic_cast<const CloudSlot*>(body.slot());
+    if (slot != nullptr && slot->options().device.first() == device_ && slot->is_on_device()) {
+      slot->require(stream_.get());
+      ask(slot->body().surface(), measures, jobs, sums);
+      if (slot->is_sound()) return;
+    }
+    run_on<DepthBody>(body, measures, jobs, sums);
   }
 
   template <class Surface>
-  RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
-                                      Answer* answer) const {
-    // Few points lie in reach: they take less than a large level's spheres. One block counts them
-    // at least, however small the device is.
-    unsigned sphere_blocks = blocks;
-    if (counts_points_) sphere_blocks -= std::max(1U, blocks / (is_small(level_.view()) ? 2 : 8));
-    return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
-            sphere_blocks, totals_.get(), counters_.get(),  answer};
+  void ask(const Surface& surface, std::span<DeviceMeasure* const> measures,
+           std::span<const BodyJob> jobs, std::span<BodySum> sums) {
+    if (measures.size() == 1 && jobs.size() == 1) {
+      sums.front() = ask(surface, jobs.front().to_body);
+      return;
+    }
+    if (!batch_) batch_ = std::make_unique<Batch>();
+    for (std::size_t begin = 0; begin < jobs.size(); begin += Batch::kJobs) {
+      const std::size_t count = std::min(Batch::kJobs, jobs.size() - begin);
+      batch_->order.order(jobs.subspan(begin, count), measures.size());
+      const std::span<const RawResult> answers = answers_of(surface, measures);
+      for (std::size_t k = 0; k < count; ++k)
+        sums[begin + batch_->order.place(k)] = sum_of(answers[k]);
+    }
   }
+
   template <class Surface>
-  void launch_on(const Surface& surface, const PoseKernel<Surface>& kernel, const PoseFrame& frame,
-                 Answer* answer, unsigned sequence) {
+  BodySum ask(const Surface& surface, const Pose& to_body) {
+    const auto& kernel = std::get<PoseKernel<Surface>>(kernels_);
+    const RefinedLaunch<Surface> arguments{level_.view(), surface,         memory_.space(),
+                                           totals_.get(), counters_.get(), answer_.device()};
     launch_kernel(kernel.function, {kernel.blocks, kThreads},
-                  kernel.meets ? LaunchKind::cooperative : LaunchKind::independent, stream(),
-                  arguments_of(surface, kernel.blocks, answer), frame, sequence);
+                  kernel.meets ? LaunchKind::cooperative : LaunchKind::independent, stream_.get(),
+                  arguments, to_body, sequence_ + 1);
+    const RawResult raw = wait_for(*answer_.host(), ++sequence_, stream_.get());
+    flood_microseconds_ = 1e-3 * raw.flood_ns;
+    return sum_of(raw);
   }
 
-  static const LevelView& level_of(const ToolPart& part) {
-    return static_cast<const RefinedOnDevice&>(*part.measure).level_.view();
+  // Returns the answers to the ordered jobs of one launch.
+  template <class Surface>
+  std::span<const RawResult> answers_of(const Surface& surface,
+                                        std::span<DeviceMeasure* const> measures) {
+    const std::vector<Pose>& poses = batch_->order.poses();
+    check(cudaMemcpyAsync(batch_->poses.get(), poses.data(), poses.size() * sizeof(Pose),
+                          cudaMemcpyHostToDevice, stream_.get()));
+    make_room(measures);
+    launch_batch(surface, measures);
+    check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
+                          poses.size() * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
+    check(cudaStreamSynchronize(stream_.get()));
+    return {batch_->answers.data(), poses.size()};
   }
-  void make_room(std::span<const ToolPart> tools) {
+
+  static const LevelView& level_of(std::span<DeviceMeasure* const> measures,
+                                   const JobOrder::Part& part) {
+    return dynamic_cast<const RefinedOnDevice&>(*measures[part.tool]).level_.view();
+  }
+  void make_room(std::span<DeviceMeasure* const> measures) {
     TeamRoom wanted = teams_ ? teams_->room : TeamRoom();
-    for (const ToolPart& part : tools) wanted = wanted.with(TeamRoom(level_of(part)));
+    for (const JobOrder::Part& part : batch_->order.parts())
+      wanted = wanted.with(TeamRoom(level_of(measures, part)));
     if (teams_ && teams_->room.holds(wanted)) return;
     teams_.reset();  // before more memory is taken
     teams_ = make_teams<Teams>(teams_that_fit(RefinedMemory::bytes_of_team(wanted), kBatchBlocks),
@@ -114,41 +174,59 @@ class RefinedOnDevice : public MeasureOnDevice {
   }
   // Launches batches of as many tools as a launch has room for.
   template <class Surface>
-  void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* poses,
-                 RawResult* results) {
-    BatchLaunch<Surface> arguments{
-        {}, {}, surface, cloud().points(), teams_->memory.space(), teams_->room, counts_points_};
-    for (unsigned begin = 0; !tools.empty();) {
-      const std::size_t count = std::min<std::size_t>(arguments.kTools, tools.size());
+  void launch_batch(const Surface& surface, std::span<DeviceMeasure* const> measures) {
+    BatchLaunch<Surface> arguments{{}, {}, surface, teams_->memory.space(), teams_->room};
+    std::span<const JobOrder::Part> parts = batch_->order.parts();
+    for (unsigned begin = 0; !parts.empty();) {
+      const std::size_t count = std::min<std::size_t>(arguments.kTools, parts.size());
       for (std::size_t t = 0; t < count; ++t) {
-        arguments.levels[t] = level_of(tools[t]);
-        arguments.ends[t] = tools[t].end - begin;
+        arguments.levels[t] = level_of(measures, parts[t]);
+        arguments.ends[t] = parts[t].end - begin;
       }
-      const unsigned end = tools[count - 1].end;
+      const unsigned end = parts[count - 1].end;
       launch_kernel(many_poses<Surface>, {std::min(teams_->count, end - begin), kBatchThreads},
-                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
-                    end - begin, results + begin);
-      tools = tools.subspan(count);
+                    LaunchKind::independent, stream_.get(), arguments, batch_->poses.get() + begin,
+                    end - begin, batch_->results.get() + begin);
+      parts = parts.subspan(count);
       begin = end;
     }
   }
 
+  int device_;
   DeviceLevel level_;
-  bool counts_points_;
-  PoseKernel<DepthSurface> of_images_;
-  PoseKernel<DiskSurface> of_points_;
+  BodyKinds::OfSurfaces<PoseKernel> kernels_;
+  Stream stream_;
+  MappedArray<Answer> answer_{1};
+  unsigned sequence_ = 0;
+  double flood_microseconds_ = 0;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
+  BodyCopies copies_;
+  std::unique_ptr<Batch> batch_;
   std::unique_ptr<Teams> teams_;
 };
 
-}  // namespace
-
-std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
-                                                    const QueryOptions& options, int device) {
+std::unique_ptr<DeviceMeasure> measure_on(int device, const ToolModel& tool, const Level& level,
+                                          const QueryOptions& options) {
   const CurrentDevice current(device);
   return std::make_unique<RefinedOnDevice>(tool, level, options, device);
 }
 
+}  // namespace
 }  // namespace vpm::cuda
+
+namespace vpm {
+
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
+                                                   const QueryOptions& options) {
+  const Device& device = options.device;
+  const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
+  std::vector<std::unique_ptr<DeviceMeasure>> measures;
+  for (int k = 0; k < count; ++k)
+    measures.push_back(cuda::measure_on(device.first() + k, tool, level, options));
+  if (measures.size() == 1) return std::move(measures.front());
+  return std::make_unique<SpreadMeasure>(std::move(measures));
+}
+
+}  // namespace vpm

@@ -153,7 +153,7 @@ class TaskMeasure {
       work_.notes.sums[block_task.cell] = sum;
     } else {
       found_.sum.add(sum);
-      if (sum.volume.value != 0) count(block_task.cell, cell_bit::counted);
+      if (counts(sum)) count(block_task.cell, cell_bit::counted);
     }
   }
 
@@ -260,17 +260,17 @@ class TaskMeasure {
   // Notes the result of a task, which one thread calls for its subwarp.
   __device__ void note_task(const Task& task, const CellResult& result) {
     const std::uint32_t i = task.cell;
-    const bool cut = result.plane.count > 0;
+    const CellClass found = class_of_result(result);
+    const bool cut = found == CellClass::cut;
     if (kFloods) {
-      const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
+      const bool partial = !task.is_whole() && found == CellClass::partial;
       const std::uint32_t bits =
           (cut ? cell_bit::cut | cell_bit::summed : 0) | (partial ? cell_bit::partial : 0);
       if (bits != 0) atomicOr(&work_.notes.words[i], bits);
       add_atomically(result.sum, work_.notes.sums[i]);
     } else {
       found_.sum.add(result.sum);
-      if (cut || result.sum.volume.value != 0)
-        count(i, cell_bit::counted | (cut ? cell_bit::cut : 0));
+      if (cut || counts(result.sum)) count(i, cell_bit::counted | (cut ? cell_bit::cut : 0));
     }
     if (cut) add_atomically(result.plane, work_.notes.planes[i]);
   }

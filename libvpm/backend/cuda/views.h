@@ -4,9 +4,8 @@
 #include <cstdint>
 
 #include "libvpm/backend/cell_clusters.h"
-#include "libvpm/backend/sphere_location.h"
+#include "libvpm/measure/body_sum.h"
 #include "libvpm/measure/cell_measure.h"
-#include "libvpm/scene/cuda/device_cloud.h"
 #include "libvpm/scene/depth/depth_sampler.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/scene/points/disk_surface.h"
@@ -21,7 +20,7 @@ struct alignas(32) TaskBall {
 // Describes one block of a cell, or a cell without blocks, to be classified. Its data lie together,
 // since waiting lanes read them once.
 struct alignas(32) BlockTask {
-  enum Ball { of_cell, of_block, of_sphere, kBalls };
+  enum Ball { of_cell, of_block, kBalls };
   enum Flag : std::uint32_t {
     is_head = 1,     // the first of its cell
     is_compact = 2,  // is_compact() is true of its cell
@@ -31,6 +30,12 @@ struct alignas(32) BlockTask {
   std::uint32_t cell = 0, block = 0, begin = 0, end = 0;  // begin, end: samples of the block
   std::uint32_t flags = 0;
 };
+
+// Returns what a block task of a cell wholly behind the surface stands for.
+VPM_HD constexpr WholePart whole_part_of(std::uint32_t flags) {
+  return whole_part((flags & BlockTask::is_compact) != 0, (flags & BlockTask::is_head) != 0,
+                    (flags & BlockTask::has_block) != 0);
+}
 
 // Groups block tasks of one cluster that are classified together.
 struct TaskGroup {
@@ -82,10 +87,7 @@ struct LevelView {
   WarpTaskGroups of_warps;
   const Edge* edges = nullptr;                // ordered by their larger index
   const std::uint32_t* edge_begin = nullptr;  // edges by larger index; count + 1 entries
-  GridView grid;
-  Vec3 center_of_mass;
   ToolReach tool_reach;
-  double spheres_reach = 0;  // bounding radius of all spheres about the centre of mass, m
 
   VPM_HD CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
@@ -93,45 +95,15 @@ struct LevelView {
   }
 };
 
-// Holds a pose as the steps of a query need it.
-struct PoseFrame {
-  Pose to_surface;        // maps coordinates about the tool's centre of mass
-  Pose to_tool;           // maps coordinates about the cloud's origin
-  Vec3 center;            // the tool's centre of mass, about the cloud's origin
-  PixelRectangle pixels;  // pixels that the tool can reach, in organised clouds
-};
-
-VPM_HD inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud, Vec3 center_of_mass,
-                                 double spheres_reach) {
-  PoseFrame frame;
-  const Pose from_center_of_mass{pose.rotation, pose * center_of_mass};
-  const Pose surface = cloud.is_organised ? cloud.camera_to_world : Pose{{}, cloud.origin};
-  frame.to_surface = relative_to(surface, from_center_of_mass);
-  frame.to_tool = relative_to(pose, {{}, cloud.origin});
-  frame.center = pose.rotation * center_of_mass + (pose.translation - cloud.origin);
-  if (cloud.is_organised) {
-    const Vec3 at = relative_to(cloud.camera_to_world, {{}, cloud.origin}) * frame.center;
-    frame.pixels =
-        rectangle_of_ball(cloud.intrinsics, cloud.width, cloud.height, at, spheres_reach);
-  }
-  return frame;
-}
-
 // Holds the result of a kernel, in the tool's axes.
 struct RawResult {
   ToolSum sum;
-  std::uint32_t boundary = 0, inside = 0, points = 0;
+  std::uint32_t boundary = 0, inside = 0;
   std::uint32_t flood_ns = 0;  // time of one pose after the boundary was known, ns
 };
 
-inline Result result_of(const RawResult& raw, const ToolModel& tool,
-                        const Rotation& tool_to_world) {
-  Result result;
-  raw.sum.write(tool, tool_to_world, result);
-  result.boundary = raw.boundary;
-  result.inside = raw.inside;
-  result.points = raw.points;
-  return result;
+inline BodySum sum_of(const RawResult& raw) {
+  return {raw.sum, raw.boundary, raw.inside, std::nullopt};
 }
 
 }  // namespace vpm::cuda

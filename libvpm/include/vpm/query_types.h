@@ -26,9 +26,6 @@ struct QueryOptions {
   // The poses are those of one motion: a tool that passes wholly behind the surface stays inside
   // until it comes out. Refined measure on the CPU only.
   bool coherent = false;
-  // The refined measure counts Result::points, which takes up to 2.5 times as long; the printed one
-  // counts them anyway.
-  bool counts_points = false;
   OccludedSpace occluded = OccludedSpace::within_reach;  // solid: refined measure, in depth images
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
@@ -55,7 +52,8 @@ struct Result {
   Wrench wrench;
   std::uint32_t boundary = 0;  // spheres that the surface cuts
   std::uint32_t inside = 0;    // spheres behind the surface that count
-  // Distinct points of the scene strictly inside a sphere of the tool; empty if not counted.
+  // Distinct points of the scene strictly inside a sphere of the tool; the measure as printed
+  // counts them, the refined one does not.
   std::optional<std::uint32_t> points;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;

@@ -14,9 +14,9 @@
 
 namespace vpm {
 
+class AnyBody;        // the library's own
 struct Cloud;         // the library's own
 struct HandleAccess;  // the library's own
-class SceneBody;      // the library's own
 
 // Handle of immutable measured points with normals into free space; copies share it. Thread-safe.
 // Whatever is asked of a handle that was moved from throws Error(invalid_argument), as of all
@@ -69,9 +69,9 @@ class VPM_API Body {
 
  private:
   friend HandleAccess;
-  explicit Body(std::shared_ptr<const SceneBody> body) : body_(std::move(body)) {}
+  explicit Body(std::shared_ptr<const AnyBody> body) : body_(std::move(body)) {}
 
-  std::shared_ptr<const SceneBody> body_;  // null once moved from
+  std::shared_ptr<const AnyBody> body_;  // null once moved from
 };
 
 // List of bodies in one world frame; copies share the bodies. Thread-safe.
@@ -82,14 +82,18 @@ class VPM_API Scene {
   // Prepares a cloud, as Body does, and makes a scene of it: to be done once, not for each pose.
   explicit Scene(const PointCloud& cloud) : Scene(Body(cloud)) {}
 
-  // Makes a scene of several bodies. Throws Error(unavailable) for more than one: this version
-  // measures a tool against one body at a time; Error(invalid_argument) for none.
+  // Makes a scene of several bodies: volume, force, torque and counts of spheres are the sums over
+  // them, so that a place in two bodies counts for both; a sphere's state is boundary if any body
+  // cuts it, else inside if it is inside of any. Throws Error(invalid_argument) for none.
   explicit Scene(std::vector<Body> bodies);
 
   const std::vector<Body>& bodies() const;
 
  private:
-  std::shared_ptr<const std::vector<Body>> bodies_;  // never empty; null once moved from
+  friend HandleAccess;
+
+  std::shared_ptr<const std::vector<Body>> bodies_;   // never empty; null once moved from
+  std::shared_ptr<const std::vector<AnyBody>> list_;  // the same bodies, side by side
 };
 
 }  // namespace vpm

@@ -1,7 +1,5 @@
-// Makes points with normals of a tile of an image by a block, for cloud_prepare.cu.
+// Finds the normals of a tile of an image by a block, and closes its holes, for cloud_prepare.cu.
 #pragma once
-
-#include <math_constants.h>
 
 #include "libvpm/scene/cuda/cloud_normals.h"
 
@@ -12,17 +10,15 @@ template <class Normals>
 struct TileArrays {
   using Frame = typename Normals::Frame;
   using Column = typename Normals::Column;
-  Column* columns;  // columns of the windows, later the positions
+  Column* columns;  // columns of the windows
   double *ray_x, *ray_y;
   float *inverse, *depth;  // with the margin
   float* closed;           // after the first pass, with a margin of 1
   Vec3f* normals;          // camera axes
   float* measured;         // inverse depth without holes
-  Vec3f* world_normals;
-  std::uint16_t* gated;  // pixels whose windows are not smooth
+  std::uint16_t* gated;    // pixels whose windows are not smooth
 
   static constexpr int kClosedWidth = CloudTile::kWidth + 2, kClosedHeight = CloudTile::kHeight + 2;
-  static_assert(sizeof(Column) * CloudTile::kWidth >= sizeof(Vec3f) * CloudTile::kWidth);
 
   __device__ TileArrays(const Frame& tile, SharedArrays arrays)
       : columns(arrays.take<Column>(CloudTile::kHeight * tile.columns())),
@@ -33,7 +29,6 @@ struct TileArrays {
         closed(arrays.take<float>(kClosedWidth * kClosedHeight)),
         normals(arrays.take<Vec3f>(CloudTile::kPixels)),
         measured(arrays.take<float>(CloudTile::kPixels)),
-        world_normals(arrays.take<Vec3f>(CloudTile::kPixels)),
         gated(arrays.take<std::uint16_t>(CloudTile::kPixels)) {}
 
   static constexpr std::size_t bytes(int radius) {
@@ -46,7 +41,7 @@ struct TileArrays {
            size(sizeof(double), CloudTile::kWidth + CloudTile::kHeight) +
            size(sizeof(float),
                 (Normals::kNeedsDepth ? 2 : 1) * image + kClosedWidth * kClosedHeight) +
-           size(2 * sizeof(Vec3f) + sizeof(float) + sizeof(std::uint16_t), CloudTile::kPixels);
+           size(sizeof(Vec3f) + sizeof(float) + sizeof(std::uint16_t), CloudTile::kPixels);
   }
 };
 
@@ -141,9 +136,9 @@ class TileWork {
     }
   }
 
-  // Writes the image for denoising and puts the points into shared memory. Counts the points, and
-  // those whose normals are not of unit length.
-  __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
+  // Writes the image for denoising. Counts the pixels that have a normal, and those whose normals
+  // are not of unit length.
+  __device__ __forceinline__ void write_seen(unsigned& points, unsigned& doubtful) const {
     const Rotation to_world = recipe_.camera.to_world.rotation, to_camera = recipe_.to_camera;
     float4* const seen = recipe_.seen;
     float* const image = recipe_.room.measured;
@@ -152,29 +147,16 @@ class TileWork {
       const int x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
       const Vec3f normal = arrays_.normals[k];
       const bool is_point = !is_zero(normal);
-      Vec3f in_world, turned_back, position{CUDART_NAN_F, CUDART_NAN_F, CUDART_NAN_F};
-      if (is_point) {
-        in_world = narrow(to_world * widen(normal));
-        turned_back = narrow(to_camera * widen(in_world));
-      }
+      Vec3f turned_back;
+      if (is_point) turned_back = narrow(to_camera * widen(narrow(to_world * widen(normal))));
       if (tile_.holds(x, y)) {
         const float measured = arrays_.measured[k];
         seen[tile_.pixel(x, y)] = {turned_back.x, turned_back.y, turned_back.z, measured};
         image[tile_.pixel(x, y)] = measured;
       }
       add_up(is_point && is_doubtful(normal), doubtful);
-      if (is_point) {
-        const double depth = recipe_.depth[tile_.pixel(x, y)];
-        position = narrow(to_world * point_on_ray(arrays_.ray_x[x], arrays_.ray_y[y], depth));
-      }
-      positions()[k] = position;
-      arrays_.world_normals[k] = in_world;
       add_up(is_point, points);
     }
-  }
-  __device__ __forceinline__ void write_points() const {
-    write_rows(tile_, positions(), recipe_.room.positions);
-    write_rows(tile_, arrays_.world_normals, recipe_.room.normals);
   }
 
  private:
@@ -225,7 +207,7 @@ class TileWork {
                : between_neighbors(image, tile_.width, tile_.height, u, v);
   }
 
-  // True if a normal is so far off unit length that a PreparedCloud might refuse it.
+  // True if a normal is so far off unit length that a PreparedImage might refuse it.
   __device__ __forceinline__ static bool is_doubtful(Vec3f n) {
     constexpr float kSquaredTolerance = 1e-3F;
     return !(std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1) <= kSquaredTolerance);
@@ -235,10 +217,6 @@ class TileWork {
   __device__ __forceinline__ static void add_up(bool is_one, unsigned& count) {
     const unsigned ones = __ballot_sync(~0U, is_one);
     if (ones != 0 && threadIdx.x % 32 == 0) atomicAdd(&count, static_cast<unsigned>(__popc(ones)));
-  }
-
-  __device__ __forceinline__ Vec3f* positions() const {
-    return reinterpret_cast<Vec3f*>(arrays_.columns);
   }
 
   const CloudRecipe& recipe_;

@@ -28,7 +28,7 @@ __device__ void store(float4 d, const CloudRecipe& recipe, std::size_t first) {
 }
 
 // Sets the coarse tiles, which several blocks' pixels share, to the neutral range.
-__device__ void clear_coarse_tiles(const CloudRoom& room, const Camera& camera, unsigned thread,
+__device__ void clear_coarse_tiles(const ImageRoom& room, const Camera& camera, unsigned thread,
                                    unsigned threads) {
   for (int level = CloudTile::kLevels + 1; level < room.levels; ++level) {
     const std::size_t count =
@@ -64,9 +64,8 @@ __global__ void __launch_bounds__(CloudTile::kPointThreads,
   work.find_rays();
   wait_for_last();
   work.find_normals(gated);
-  work.place_points(points, doubtful);
+  work.write_seen(points, doubtful);
   __syncthreads();
-  work.write_points();
   if (threadIdx.x != 0) return;
   if (points > 0) atomicAdd(&counters->points, points);
   if (doubtful > 0) atomicAdd(&counters->doubtful, doubtful);

@@ -22,7 +22,7 @@ inline constexpr unsigned kPixelsAtOnce = 8;
 // Holds the results of an image's preparation, in memory that the host reads.
 struct CloudAnswer {
   NumberedWord points = 0;    // number of points with a normal
-  NumberedWord doubtful = 0;  // not 0: there are points that a PreparedCloud might refuse
+  NumberedWord doubtful = 0;  // not 0: there are points that a PreparedImage might refuse
 };
 
 struct CloudCounters {

@@ -17,7 +17,7 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       depth_(whole_groups(pixels())),
       inverse_(whole_groups(pixels())),
       seen_(pixels()),
-      cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
+      body_(Camera{options.intrinsics, options.width, options.height, {}}),
       counters_(1),
       answer_(1),
       recipe_{depth_.get(),
@@ -31,7 +31,7 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
               whole_window(options.normals.window),
               seen_.get(),
               options.points,
-              cloud_.room()},
+              body_.room()},
       preparation_(preparation_of(options.normals)) {
   counters_.clear();
   set_camera();
@@ -47,14 +47,13 @@ void CloudSlot::set_camera() {
 }
 
 void CloudSlot::begin() {
-  const auto& [rotation, translation] = camera().to_world;  // as PreparedCloud accepts it
+  const auto& [rotation, translation] = camera().to_world;  // as PreparedImage accepts it
   is_plain_ = preparation_.fits && is_usual(camera()) && is_rotation(rotation, kRotationExact) &&
               is_in_range(translation);
   if (!is_plain_) {
-    cloud();  // throws what is to be refused
+    prepared();  // throws what is to be refused
     return;
   }
-  cloud_.stand_at(camera().to_world);
   set_camera();
   const CurrentDevice current(options().device.first());
   launch();
@@ -119,7 +118,7 @@ bool CloudSlot::is_sound() const {
 
 std::size_t CloudSlot::points() const {
   if (is_plain_ && is_sound()) return value_of(look_at(answer_.host()->points));
-  return cloud().positions().size();
+  return prepared().positions().size();
 }
 
 }  // namespace vpm::cuda

@@ -5,8 +5,8 @@
 
 #include "libvpm/device/cuda/runtime.h"
 #include "libvpm/scene/cuda/cloud_prepare.h"
-#include "libvpm/scene/cuda/device_cloud.h"
-#include "libvpm/scene/frame_preparation.h"
+#include "libvpm/scene/cuda/device_bodies.h"
+#include "libvpm/scene/frame_slot.h"
 
 namespace vpm::cuda {
 
@@ -27,17 +27,15 @@ class CloudSlot : public FrameSlot {
   // True if the CPU would refuse no point. Waits until all are known.
   bool is_sound() const;
 
-  const DeviceCloud& device_cloud() const { return cloud_; }
-
-  // Launch the two steps of preparation one by one, for benchmarks.
-  void take(cudaStream_t stream);
-  void make(cudaStream_t stream);
+  const DeviceDepthBody& body() const { return body_; }
 
  protected:
   void begin() override;
 
  private:
   void launch();
+  void take(cudaStream_t stream);
+  void make(cudaStream_t stream);
   void set_camera();
   bool is_answered() const;
 
@@ -45,7 +43,7 @@ class CloudSlot : public FrameSlot {
   MappedArray<std::byte> image_;
   DeviceArray<float> depth_, inverse_;
   DeviceArray<float4> seen_;
-  DeviceCloud cloud_;
+  DeviceDepthBody body_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
   CloudRecipe recipe_;  // for the camera of the image

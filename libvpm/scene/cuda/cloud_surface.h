@@ -121,7 +121,7 @@ class DenoiseWork {
   template <class Make>
   __device__ void make_pixels(const Make& make) const {
     constexpr int kPixels = DenoiseSizes::kPixelsOfThread;
-    Vec3f* const normals = recipe_.room.pixel_normals;
+    Vec3f* const normals = recipe_.room.normals;
     InverseDepthRange* const pixels = recipe_.room.tiles[0];
     float surface[kPixels];
 #pragma unroll

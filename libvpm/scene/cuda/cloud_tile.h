@@ -7,7 +7,7 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/runtime.h"
 #include "libvpm/include/vpm/camera.h"
-#include "libvpm/scene/cuda/device_cloud.h"
+#include "libvpm/scene/cuda/device_bodies.h"
 #include "libvpm/scene/depth/denoised_image.h"
 
 namespace vpm::cuda {
@@ -57,7 +57,7 @@ struct CloudRecipe {
   float4* seen = nullptr;  // normals in camera axes, rounded through world axes; inverse
                            // depth without holes
   Denoising points = Denoising::on;
-  CloudRoom room;
+  ImageRoom room;
 };
 
 // Places one of an image's tiles with a margin. `Radius` is the windows', or 0 if not constant.
@@ -107,22 +107,6 @@ class TileFrame {
  private:
   int radius_;
 };
-
-// Copies the rows of a block's tile to the image, word by word for coalesced stores.
-template <class Frame>
-__device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from, Vec3f* to) {
-  const auto* const words = reinterpret_cast<const float*>(from);
-  auto* const image = reinterpret_cast<float*>(to);
-  constexpr int kRow = 3 * CloudTile::kWidth;
-  const int end_x = 3 * tile.end_x(), end_y = tile.end_y();
-#pragma unroll 6
-  for (int k = static_cast<int>(threadIdx.x); k < 3 * CloudTile::kPixels;
-       k += static_cast<int>(blockDim.x)) {
-    const int x = k % kRow, y = k / kRow;
-    if (x < end_x && y < end_y)
-      image[3 * tile.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
-  }
-}
 
 // Cuts a block's shared memory into arrays.
 class SharedArrays {

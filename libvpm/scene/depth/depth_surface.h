@@ -113,11 +113,6 @@ struct DepthSurface : DepthSampler {
     return (center.z + radius) * in_ball.range.high < 1;
   }
 
-  // True if the surface in a classified ball may touch a ball in it.
-  VPM_HD bool may_touch(const BallClass& in_ball, Vec3 center, double radius) const {
-    return !(is_free_part(in_ball, center, radius) || (center.z - radius) * in_ball.range.low > 1);
-  }
-
   // Returns the least inverse depth in a classified ball, 1/m.
   static VPM_HD float least_inverse_depth(const BallClass& in_ball) { return in_ball.range.low; }
   // True if a ball in a classified one may be free although it lies behind the mean plane of all

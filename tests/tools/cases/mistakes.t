@@ -147,6 +147,13 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby
 $ echo '{"standby-us": 0}' > old.json; vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --config old.json
 2> vpm-query: error: --standby-us is gone: leave it out; a device no longer stands by between poses, and results are the same
 [2]
+$ for gone in count no; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --$gone-points; done
+2> vpm-query: error: --count-points is gone: leave it out; --measure paper counts them
+2> vpm-query: error: --no-points is gone: leave it out; points are counted by --measure paper only
+[2]
+$ echo '{"no-points": true}' > old.json; vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --config old.json
+2> vpm-query: error: --no-points is gone: leave it out; points are counted by --measure paper only
+[2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --reuse 0.001
 2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
 [2]

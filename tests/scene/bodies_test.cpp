@@ -1,10 +1,9 @@
-#include "libvpm/scene/prepared_cloud.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/scene/any_body.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -12,11 +11,10 @@ namespace {
 
 using testing::see;
 
-TEST(PreparedCloud, MergesEqualPointsAndForgetsTheirOrder) {
+TEST(AnyBody, MergesEqualPointsAndForgetsTheirOrder) {
   const Cloud seen = see(synthetic::make_scene("ball"));
   for (const Cloud& cloud : {seen, without_camera(seen)}) {
-    const PreparedCloud plain(cloud), shuffled(testing::permuted(cloud)),
-        twice(testing::doubled(cloud));
+    const AnyBody plain(cloud), shuffled(testing::permuted(cloud)), twice(testing::doubled(cloud));
     EXPECT_EQ(plain.positions().size(), cloud.size());
     EXPECT_EQ(plain.positions(), shuffled.positions());
     EXPECT_EQ(plain.normals(), twice.normals());
@@ -24,28 +22,30 @@ TEST(PreparedCloud, MergesEqualPointsAndForgetsTheirOrder) {
   }
 }
 
-TEST(PreparedCloud, RangesHoldEveryPointOfABall) {
+TEST(AnyBody, RangesHoldEveryPointOfABall) {
   const Cloud seen = see(synthetic::make_scene("inverted-ball"));
   for (const Cloud& cloud : {seen, without_camera(seen)}) {
-    const PreparedCloud prepared(cloud);
+    const AnyBody prepared(cloud);
     for (const Vec3 center :
          {Vec3{0, 0, 0.95}, Vec3{0.1, 0.2, 0.8}, Vec3{-0.3, 0, 0.01}, Vec3{0, 0, -1}}) {
       const double radius = 0.15;
       std::size_t expected = 0, found = 0;
       for (const Vec3f& p : prepared.positions()) expected += norm(widen(p) - center) < radius;
-      prepared.for_ranges_in_ball(center, radius, [&](std::uint32_t begin, std::uint32_t end) {
+      const auto count = [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t k = begin; k < end; ++k)
           found += norm(widen(prepared.positions()[k]) - center) < radius;
-      });
+      };
+      prepared.visit(
+          [&](const auto& body) { body.prepared().for_ranges_in_ball(center, radius, count); });
       EXPECT_EQ(found, expected);
     }
   }
 }
 
 // Tiles of the image cover more than a ball does, and the surface beside the ball must not count.
-TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
-  const PreparedCloud prepared(see(synthetic::make_scene("step")));
-  const DepthSurface surface = prepared.depth_surface();
+TEST(DepthBody, BallInFrontOfAllThatItsPixelsShowIsFree) {
+  const DepthBody prepared(see(synthetic::make_scene("step")));
+  const DepthSurface surface = prepared.surface();
   int free = 0, beside_the_step = 0;
   for (int k = 0; k < 20000; ++k) {
     const Vec3 center{-0.03 + 0.02 * std::sin(12.9 * k), 0.2 * std::sin(78.2 * k),
@@ -65,11 +65,11 @@ TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
   EXPECT_GT(beside_the_step, 20);  // tiles alone do not decide these
 }
 
-TEST(PreparedCloud, NearestIsTheNearest) {
+TEST(PointsBody, NearestIsTheNearest) {
   Cloud cloud = without_camera(see(synthetic::make_scene("groove")));
   cloud.positions.resize(3001), cloud.normals.resize(3001), cloud.radii.resize(3001);
-  const PreparedCloud prepared(cloud);
-  const DiskSurface disks = prepared.disk_surface();
+  const PreparedPoints prepared(cloud);
+  const DiskSurface disks = prepared.surface();
   for (int k = 0; k < 200; ++k) {
     const Vec3 x{std::sin(12.9 * k), std::sin(78.2 * k), 1 + std::sin(37.7 * k)};
     double best = HUGE_VAL;
@@ -85,8 +85,8 @@ TEST(PreparedCloud, NearestIsTheNearest) {
 // The side of a ball must be true of every place in it.
 TEST(DepthSurface, SideOfBallIsConservative) {
   for (const char* name : {"wall", "groove", "block", "inverted-ball"}) {
-    const PreparedCloud cloud(see(synthetic::make_scene(name)));
-    const DepthSurface surface = cloud.depth_surface();
+    const DepthBody cloud(see(synthetic::make_scene(name)));
+    const DepthSurface surface = cloud.surface();
     int decided = 0;
     for (int k = 0; k < 3000; ++k) {
       const Vec3 center{0.4 * std::sin(12.9 * k), 0.3 * std::sin(78.2 * k),
@@ -110,7 +110,7 @@ TEST(DepthSurface, SideOfBallIsConservative) {
   }
 }
 
-TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
+TEST(PointsBody, AroundABallTheNearestPointIsTheSame) {
   // Many distances on a lattice are equal. The spacings make short lists of points and long ones.
   for (const double spacing : {0.001, 0.01, 0.1}) {
     Cloud cloud;
@@ -121,8 +121,8 @@ TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
         cloud.radii.push_back(static_cast<float>(spacing));
       }
     }
-    const PreparedCloud prepared(cloud);
-    const DiskSurface disks = prepared.disk_surface();
+    const PreparedPoints prepared(cloud);
+    const DiskSurface disks = prepared.surface();
     for (const double height : {0.0, 0.02, -0.3}) {
       for (const double radius : {0.004, 0.02}) {
         const Vec3 center{0.5 * spacing, 0, height};
@@ -137,21 +137,21 @@ TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
   }
 }
 
-TEST(PreparedCloud, RefusesAPointOffItsPixel) {
+TEST(DepthBody, RefusesAPointOffItsPixel) {
   Cloud cloud = see(synthetic::make_scene("wall"));
   cloud.positions[5].x += 0.1f;
-  EXPECT_THROW(PreparedCloud{cloud}, Error);
+  EXPECT_THROW(AnyBody{cloud}, Error);
 }
 
-TEST(PreparedCloud, RefusesTwoPointsAtOnePixel) {
+TEST(DepthBody, RefusesTwoPointsAtOnePixel) {
   Cloud cloud = testing::doubled(see(synthetic::make_scene("wall")));
   cloud.positions[5].z *= 1.001f;
-  EXPECT_THROW(PreparedCloud{cloud}, Error);
+  EXPECT_THROW(AnyBody{cloud}, Error);
 }
 
-TEST(PreparedCloud, EmptyCloudsAnswerNothing) {
-  const PreparedCloud cloud{Cloud{}};
-  EXPECT_EQ(cloud.disk_surface().feet.nearest({}, HUGE_VAL), kNoPoint);
+TEST(PointsBody, EmptyCloudsAnswerNothing) {
+  const PointsBody cloud{Cloud{}};
+  EXPECT_EQ(cloud.surface().feet.nearest({}, HUGE_VAL), kNoPoint);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// Orders the jobs of a batch by their tools, which a launch takes one after another.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libvpm/measure/body_sum.h"
+
+namespace vpm::cuda {
+
+// Holds the jobs of one launch, ordered by tool. Memory is used again.
+class JobOrder {
+ public:
+  // Names the jobs of one tool: they follow those of the tool before.
+  struct Part {
+    std::uint32_t tool = 0;
+    unsigned end = 0;
+  };
+
+  // Counts and sorts: tools that have jobs, in their order, and of each the jobs in theirs.
+  void order(std::span<const BodyJob> jobs, std::size_t tools) {
+    next_.assign(tools + 1, 0);
+    for (const BodyJob& job : jobs) ++next_[job.tool + 1];
+    parts_.clear();
+    for (std::uint32_t t = 0; t < tools; ++t) {
+      const bool has_jobs = next_[t + 1] > 0;
+      next_[t + 1] += next_[t];
+      if (has_jobs) parts_.push_back({t, next_[t + 1]});
+    }
+    poses_.resize(jobs.size());
+    places_.resize(jobs.size());
+    for (std::uint32_t k = 0; k < jobs.size(); ++k) {
+      const std::uint32_t place = next_[jobs[k].tool]++;
+      poses_[place] = jobs[k].to_body;
+      places_[place] = k;
+    }
+  }
+
+  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Pose>& poses() const { return poses_; }
+  // Returns the job that an ordered pose is from.
+  std::uint32_t place(std::size_t k) const { return places_[k]; }
+
+ private:
+  std::vector<Part> parts_;
+  std::vector<Pose> poses_;
+  std::vector<std::uint32_t> places_, next_;
+};
+
+}  // namespace vpm::cuda

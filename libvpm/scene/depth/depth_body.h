@@ -1,0 +1,50 @@
+// Defines the body that a camera's depth image is.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/depth/prepared_image.h"
+
+namespace vpm {
+
+class FrameSlot;  // frame_slot.h
+namespace cuda {
+class DeviceDepthBody;
+}
+
+// Handle of an immutable depth image that is ready for queries; copies share it. Thread-safe.
+class DepthBody {
+ public:
+  using Surface = DepthSurface;
+  using OnDevice = cuda::DeviceDepthBody;
+
+  // Prepares a cloud that keeps its depth image. Throws what PreparedImage throws.
+  explicit DepthBody(const Cloud& cloud, Denoising points = Denoising::on)
+      : DepthBody(PreparedImage(cloud, points)) {}
+  explicit DepthBody(PreparedImage image)
+      : image_(std::make_shared<const PreparedImage>(std::move(image))) {}
+  // Takes a frame that is prepared, or being prepared, maybe on a device.
+  explicit DepthBody(std::shared_ptr<const FrameSlot> slot) : slot_(std::move(slot)) {}
+
+  // Returns what maps the surface's frame, which is the camera's, to the world's.
+  const Pose& to_world() const;
+  // Returns the number of pixels that have a normal. Waits for the preparation.
+  std::size_t points() const;
+  // Returns the image as the CPU prepares it: a device's frame on the first call. Throws what
+  // PreparedImage throws.
+  const PreparedImage& prepared() const;
+  DepthSurface surface() const { return prepared().surface(); }
+  std::uint64_t serial() const;
+
+  // Returns the memory of a frame that DepthFrames has prepared, else null.
+  const FrameSlot* slot() const { return slot_.get(); }
+
+ private:
+  std::shared_ptr<const PreparedImage> image_;  // one of these is null
+  std::shared_ptr<const FrameSlot> slot_;
+};
+
+}  // namespace vpm
