@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// Keeps a cell's ball inside its cluster's despite rounding.
+// Factor that keeps a cell's ball inside its cluster's in spite of rounding.
 constexpr double kRounding = 1 + 1e-12;
 
 Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& cells,

@@ -7,8 +7,8 @@
 namespace vpm {
 namespace {
 
-// Returns the factor of a number whose key says only that it is some scale of depths. Metres have
-// at least a hundred units in files of integers, and BOP's a unit of 0.01 mm or more.
+// Returns the factor of a number whose key says only that it is some scale of depths. A metre has
+// at least a hundred units in files of integers; in BOP's, a unit is 0.01 mm or more.
 DepthFactor factor_of_scale(const std::string& told, double value) {
   constexpr double kFewestPerMetre = 100, kSmallestInMillimetres = 0.01;
   if (value >= kFewestPerMetre) return {told, "", value};
@@ -19,7 +19,8 @@ DepthFactor factor_of_scale(const std::string& told, double value) {
 }  // namespace
 
 std::optional<DepthFactor> depth_factor_in(const Fields& fields) {
-  constexpr double kFewestOfScale = 100;  // a "scale" below is one of the scene or of the image
+  constexpr double kFewestOfScale =
+      100;  // a smaller "scale" is that of a scene or of an image's size
   for (const char* key : {"rgbd.depthmapfactor", "depthmapfactor", "depthfactor", "depthscale",
                           "pngdepthscale", "integerdepthscale", "depthunitscalefactor", "scale"}) {
     const std::string name = key;

@@ -19,8 +19,8 @@ struct DepthFactor {
 // Returns the factor in an object of a calibration; empty if there is none that a depth image has.
 std::optional<DepthFactor> depth_factor_in(const Fields& fields);
 
-// Returns a warning that the file's factor is not used where it is neither the one that was given
-// nor, if none was, one of those that depth images have without; a note where another was given.
+// Returns a note that the file's factor is not used if another was given, and a warning if none was
+// given and the file's is not 1000 or 1, which depth images have without being told.
 Remarks unused_factor(const std::optional<DepthFactor>& factor,
                       const std::optional<double>& units_per_metre);
 

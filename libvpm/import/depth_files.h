@@ -61,7 +61,7 @@ void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t
 // Returns the shortest text that reads back as the number, or as the float if it is one.
 std::string number_text(double value);
 
-// Tells of a file that goes on after its first image.
+// Said of a file that goes on after its first image.
 inline constexpr const char* kSeveralImages = "it holds several images; the first is read";
 
 }  // namespace vpm

@@ -31,8 +31,8 @@ std::uint16_t swapped(std::uint16_t bits) {
   return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
 }
 
-// Returns the median of the measured values, which the two bytes of each are exchanged in first if
-// `swaps`; 0 if there is none.
+// Returns the median of the measured values, with the two bytes of each exchanged if `swaps`; 0 if
+// nothing was measured.
 float median_of(std::span<const float> values, bool swaps) {
   std::vector<float> measured;
   for (const float value : values) {
@@ -198,8 +198,8 @@ struct EndOfRange {
   std::size_t count = 0;      // pixels with the value
 };
 
-// Returns the end of the values, up to `farthest`, of which none is nearer to the end by
-// `is_beyond`.
+// Returns the value at one end of the range: of those up to `farthest`, the one that no other is
+// beyond, by `is_beyond`.
 template <class IsBeyond>
 EndOfRange end_of(std::span<const float> values, double farthest, const IsBeyond& is_beyond) {
   EndOfRange end;
@@ -389,7 +389,7 @@ DepthImage depth_in_metres_of(const RawDepth& raw, const Intrinsics& intrinsics,
   std::vector<float> values = raw.values;
   const bool look_coded = decode(values, raw, reading, name, remarks);
   remove_markers(values, reading, remarks);
-  // A disparity has become metres.
+  // Disparities are metres by now.
   const double usual = reading.decoding.disparity ? 1 : raw.usual_units_per_metre();
   const double units_per_metre = reading.units_per_metre.value_or(usual);
   if (reading.looks_for_mistakes && !look_coded)

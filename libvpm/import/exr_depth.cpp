@@ -106,8 +106,9 @@ class HeaderCheck {
     }
   }
 
-  // OpenEXR reads values of most types to an end that is not the declared one. All after it would
-  // be other attributes to OpenEXR than they are here.
+  // Throws if a value's declared length is not that of its type. OpenEXR reads values of most types
+  // to an end of their own, and would find other attributes behind it than those that are checked
+  // here.
   static void check_length(std::string_view name, std::string_view type, std::string_view value) {
     std::uint64_t length = value.size();
     for (const auto& [known, bytes] : kLengths)
@@ -152,8 +153,8 @@ class HeaderCheck {
     }
   }
 
-  // The format requires these; OpenEXR takes a value of its own for one that is missing, which may
-  // ask for more memory than what is declared.
+  // Throws if an attribute is missing that the format requires. OpenEXR takes a value of its own
+  // for it, which may ask for more memory than what is declared.
   static void check_names(const Part& part) {
     for (const char* name : {"channels", "compression", "dataWindow", "displayWindow"})
       if (!part.names.contains(name))

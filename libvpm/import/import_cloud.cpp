@@ -60,8 +60,8 @@ RawDepth parse_depth(ScanFormat format, std::span<const std::byte> bytes, const 
   }
 }
 
-// Throws Error(refused), with the intrinsics of the image's size, if the calibration is of another
-// one.
+// Throws Error(refused), telling the intrinsics scaled to this image, if the calibration is of
+// another size.
 void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
                            const std::string& name) {
   const double width = options.calibrated_width, height = options.calibrated_height;
@@ -88,7 +88,8 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
 
 ImportedScan scan_of_image(ScanFormat format, std::span<const std::byte> bytes,
                            const std::string& name, const ImportOptions& options) {
-  // Comes before the intrinsics, which a file that is no depth image must not ask for.
+  // Reads the image first: a file that is no depth image must not be refused for want of
+  // intrinsics.
   const RawDepth raw = parse_depth(format, bytes, name, options);
   if (!options.intrinsics) {
     throw Error(ErrorKind::invalid_argument,

@@ -21,14 +21,14 @@
 namespace vpm {
 
 struct ImportOptions {
-  // If unset, an organised PCD gets its own by a fit.
+  // Camera of the image or grid. If unset, that of an organised PCD is fitted to its points.
   std::optional<Intrinsics> intrinsics;
   std::uint32_t calibrated_width = 0,
                 calibrated_height = 0;  // image of the intrinsics, px; 0 if it is not known
   std::optional<ImageRegion> calibrated_region;  // part of it that a driver cuts out
   DepthReading depth;                            // its unit holds for points too
   std::string channel;  // depth channel of an OpenEXR image; if empty, its name tells
-  // Axes of the frame that `to_world` takes to the world, and of points.
+  // Axes of the frame that `to_world` maps to the world, and of points.
   CameraAxes axes = CameraAxes::opencv;
   std::optional<Pose> to_world;  // if unset, a PCD's VIEWPOINT, or identity for this library's axes
   bool flip = false;             // turns the normals of points that have some and no camera

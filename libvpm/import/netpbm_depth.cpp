@@ -72,7 +72,8 @@ class NetpbmReader {
     return static_cast<std::uint64_t>(value);
   }
 
-  // Returns the pixels' bytes, of which each has `bytes_each`, after the line end of the header.
+  // Returns the bytes of the pixels, `bytes_each` for each, which begin after the header's last
+  // line end.
   const std::byte* data(std::size_t bytes_each) {
     const std::size_t needed = std::size_t{image_.width} * image_.height * bytes_each;
     cursor_.skip();

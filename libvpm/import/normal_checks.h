@@ -20,8 +20,8 @@ Remarks improbable_normals(const Cloud& cloud);
 bool are_in_world(const PointSet& points, bool are_flipped);
 
 // Returns a warning if nearly all normals of the points that are seen from the origin face away
-// from it, where the sensor was if the file has a viewpoint, and may have been if all points lie
-// before a camera there. Points of no such view cannot be judged.
+// from it. The sensor was there if the file has a viewpoint, and may have been if all points lie
+// before a camera there; other points are not judged.
 Remarks facing_away(const PointSet& points, bool are_flipped);
 
 }  // namespace vpm

@@ -14,7 +14,7 @@ namespace {
   refuse("not a depth image in NPY: " + defect, name, hint);
 }
 
-// Refuses points, one a row, of which an image would be a few pixels wide.
+// Refuses a table with a point in each row: as an image it would be a few pixels wide.
 void refuse_table(const std::vector<std::uint64_t>& shape, const std::string& name) {
   constexpr std::uint64_t kMostColumns = 8, kRowsPerColumn = 16;
   if (shape[1] < 3 || shape[1] > kMostColumns || shape[0] < kRowsPerColumn * shape[1]) return;

@@ -194,7 +194,7 @@ void PcdParser::read_fields(const std::vector<std::string_view>& words) {
 }
 
 void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
-  // Some writers have no pose and fill the line with zeros, of any number.
+  // Some writers know no pose and fill the line with zeros, not always seven.
   if (std::all_of(words.begin() + 1, words.end(),
                   [](std::string_view word) { return file::to_number(word) == 0; }))
     return;

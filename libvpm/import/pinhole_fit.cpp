@@ -35,7 +35,7 @@ class LineFit {
   double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0, pp_ = 0;
 };
 
-// Columns and rows of a grid as lines of x/z and of y/z.
+// Fits of a grid's columns as a line of x/z, and of its rows as a line of y/z.
 struct GridLines {
   LineFit column_of_x, row_of_y, column_of_y, row_of_x;
   std::size_t seen = 0;

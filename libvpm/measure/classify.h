@@ -22,12 +22,14 @@ struct ToolReach {
         supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
-// Bounds cells that count by their centroid where wholly behind the surface, in tool radii.
+// Largest radius, in tool radii, of a cell that counts by its centroid where it is wholly behind
+// the surface.
 inline constexpr double kCompactReach = 0.125;
-// Bounds clusters that may be planar, in tool radii; the blocks of wider ones decide.
+// Largest radius, in tool radii, of a cluster that may be planar; in wider ones the blocks decide.
 inline constexpr double kPlanarReach = 0.1;
-// Bounds how well one plane must fit a block, in tool radii, besides the block's own radius: it is
-// for blocks of few large cells, which are wider than the error they may make.
+// Largest distance, in tool radii, by which a block's surface may lie off one plane, besides the
+// block's own radius: it is for blocks of few large cells, which are wider than the error that they
+// may make.
 inline constexpr double kFlatness = 0.1;
 
 // True if a cell of this bounding radius may be counted by its centroid, where nothing cuts it.

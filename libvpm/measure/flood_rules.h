@@ -54,8 +54,8 @@ VPM_HD constexpr bool is_passable(std::uint32_t bits) {
   return may_be_inside(bits) && (bits & cell_bit::hidden) == 0;
 }
 
-// Bounds the distance, in bounding radii of a cell from its centre, within which a surface is
-// surely the one that cuts the cell.
+// Distance from a cell's centre, in bounding radii of the cell, within which a surface is surely
+// the one that cuts the cell.
 inline constexpr double kSheetReach = 3;
 
 // Holds the mean plane of the surface inside a cell.

@@ -123,7 +123,7 @@ struct ClippedMoments {
   Vec3 moment;  // sum of each weight times its sample's centre
   bool is_cut = false;
 };
-// Counts the partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
+// Number of partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
 // pairwise by halves. Vector lanes or threads can each add a row and get the same bits.
 inline constexpr std::uint32_t kSumRows = 16;
 

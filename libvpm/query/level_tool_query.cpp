@@ -80,9 +80,10 @@ void DeadlineLevel::took(double time) {
 
 namespace {
 
-// Sets the places of the cloud at which levels are timed, and the runs whose median counts.
+// Number of places of the cloud at which a level is timed, and of runs at each, whose median
+// counts.
 constexpr std::size_t kProbes = 8, kRunsPerProbe = 3;
-// Is shorter than any query, so that ratios of times stay finite, s.
+// Shorter than any query, s; what takes less counts as this, so that ratios of times stay finite.
 constexpr double kShortest = 1e-8;
 
 }  // namespace

@@ -37,9 +37,10 @@ class DeadlineLevel {
   void took(double time);
 
  private:
-  // Sets the part of the deadline that the expected time may use. The rest is a reserve.
+  // Part of the deadline that the expected time may use. The rest is a reserve.
   static constexpr double kMargin = 0.8;
-  // Counts the last queries of which the second slowest counts, since a lone slow one says nothing.
+  // Number of last queries of which the second slowest is taken, since a lone slow one says
+  // nothing.
   static constexpr std::size_t kRecent = 64;
 
   double slowness() const;

@@ -12,9 +12,9 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kPatches = 64;  // places on the surface that are sampled
-// Sets the nearest points that give spacing and, as the residual of a paraboloid, noise.
+// Number of nearest points that give spacing and, as the residual of a paraboloid, noise.
 constexpr std::size_t kNearest = 32;
-// Sets the radius, in tool radii, and the most points of the patch that gives curvature. Over a
+// Radius, in tool radii, of the patch that gives curvature, and the most points of it. Over a
 // smaller patch the noise of a depth camera bends more than the scene.
 constexpr double kPatchRadius = 0.25;
 constexpr std::size_t kPatchPoints = 512;

@@ -11,10 +11,9 @@
 
 namespace vpm {
 
-// Returns the scale of the surface within kNear tool radii of `place` (world), or of the whole
-// body where that holds too few points or no place is given. `reach` is the tool's radius, m. The
-// same bits for any thread count and order of points. Throws Error(refused) for fewer than
-// kFewestPoints points.
+// Returns the scale of the surface within kNear tool radii of `place` (world), or of the whole body
+// where that holds too few points or no place is given. `tool_radius` is in m. The same bits for
+// any thread count and order of points. Throws Error(refused) for fewer than kFewestPoints points.
 inline constexpr double kNear = 1.5;
 inline constexpr std::size_t kFewestPoints = 32;
 SceneScale scene_scale(const AnyBody& body, double reach, std::optional<Vec3> place);

@@ -51,7 +51,7 @@ enum class Side : std::uint8_t {
   ambiguous,   // undecided
 };
 
-// Stands for no point.
+// Index that stands for no point.
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
 // Holds the surface sampled for one place x, or for one per lane of Real.
@@ -125,12 +125,12 @@ struct OtherWall {
   TangentPlane border;
 };
 
-// Bodies smaller than this part of the tool's radius are pushed to one wall only.
+// Bodies smaller than this part of the tool radius are pushed to one wall only.
 inline constexpr double kLeastDivided = 0.012;
 // Two surfaces are two walls if the cosine between their normals is below this; otherwise they are
 // one curved surface, whose mean direction is that in the middle.
 inline constexpr double kTwoWalls = 0.9;
-// Bounds the cosine that normals about a planar body must have with the plane's, since all of it is
+// Least cosine that normals about a planar body must have with the plane's, since all of it is
 // pushed along the plane's normal.
 inline constexpr double kOneDirection = 0.95;
 

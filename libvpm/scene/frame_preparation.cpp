@@ -12,7 +12,7 @@
 namespace vpm {
 namespace {
 
-// Bounds how far rounding moves squared lengths of unit normals; validate() allows more.
+// How far rounding moves the squared length of a unit normal at most; validate() allows more.
 constexpr double kUnitTolerance = 1.9e-3;
 
 bool is_of_size(const DepthImage& depth, const Camera& camera) {

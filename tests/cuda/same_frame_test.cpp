@@ -299,7 +299,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   }
 }
 
-// Is small enough for compute-sanitizer.
+// Small enough for compute-sanitizer.
 TEST(FramesOnDevice, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   for (const NormalMethod method : {NormalMethod::inverse_depth, NormalMethod::pca}) {

@@ -319,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether, ::testing::Bool(), [](const auto
   return std::string(tested.param ? "camera" : "points");
 });
 
-// Is small enough for compute-sanitizer.
+// Small enough for compute-sanitizer.
 TEST(ToolsTogetherSmall, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const AnyBody cloud(testing::see(synthetic::make_scene("wall")));

@@ -229,7 +229,8 @@ class CutCells {
   const SpatialLevel& level_;
   const Pose& to_surface_;
   CellStates& states_;
-  // Bounds rounding: spheres lie about the tool's origin, clusters about its centre of mass.
+  // Bound of rounding, in units in the last place: spheres lie about the tool's origin, clusters
+  // about its centre of mass.
   static constexpr double kUlps = 4;
   double rounding_;  // m
 };

@@ -3,7 +3,7 @@
 //
 // A tool that has passed wholly behind the surface is cut by nothing: a single pose cannot tell
 // what is inside from what an object in front hides. With the memory a cell stays inside as long as
-// it is behind the same surface: one within the tool's radius of where its cluster was
+// it is behind the same surface: one within the tool radius of where its cluster was
 // (measure/README.md, "Coherent poses").
 #pragma once
 
@@ -61,11 +61,11 @@ class PoseMemory {
   }
 
  private:
-  // Holds the cells [begin, end) of a cluster.
+  // The cells [begin, end) of a cluster.
   struct Rows {
     std::uint32_t cluster, begin, end;
   };
-  // Spends no time on clusters that are not known.
+  // What is remembered of one pose. Clearing it takes no time for clusters that are not known.
   struct Memory {
     Memory(std::size_t cells, std::size_t clusters)
         : inside(cells), feet(clusters), known(clusters) {

@@ -6,8 +6,8 @@ namespace {
 constexpr std::uint32_t kFewCells = 8;  // a node of no more has no children
 constexpr std::size_t kGroupClusters = 8;
 constexpr double kGroupReach = 2.5 * kPlanarReach;  // in tool radii
-// Keeps a group's ball about the cells of its clusters, though not about the clusters' own balls,
-// however their projections are rounded.
+// Factor that keeps a group's ball about the cells of its clusters, though not about the clusters'
+// own balls, however their projections are rounded.
 constexpr double kGroupRounding = 1 + 1e-9;
 
 }  // namespace

@@ -39,14 +39,14 @@ struct CellNotes {
   }
 };
 
-// Holds the plane that cuts a flat block.
+// The plane that cuts a block and clips all its samples.
 struct FlatBlock {
   ClipPlane plane;
   Vec3 center;
 };
 
-// Holds a piece further behind the surface than the tool's radius, and what it adds if the plane of
-// a cut cell supports it.
+// A piece further behind the surface than the tool radius, and what it adds if the plane of a cut
+// cell supports it.
 struct FarPiece {
   Vec3 at, foot;  // the piece and the foot of its surface sample, surface frame, m
   ToolSum sum;
@@ -85,7 +85,7 @@ struct RefinedSpace {
   PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
-// Counts what a query lists; all 0 at its start.
+// Lengths of a query's lists; all 0 at its start.
 struct RefinedCounters {
   unsigned hidden = 0;  // cells
   unsigned far = 0;     // pieces

@@ -25,7 +25,8 @@ void add_chunks(const CellCluster& cluster, std::span<const WarpTask> some, std:
         {{cluster.center, cluster.reach}, begin, begin + static_cast<std::uint32_t>(these.size())});
   }
 }
-// Adds groups filled up with tasks without flags.
+// Adds block tasks of a cluster in groups of `at_once`, and fills the last group up with tasks
+// without flags, of which nothing counts.
 void add_whole_chunks(const CellCluster& cluster, std::span<const WarpTask> some,
                       std::size_t at_once, GroupedTasks<WarpTask>& out) {
   if (some.empty()) return;
@@ -118,7 +119,7 @@ std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
 
 }  // namespace
 
-// Adds each edge once, and for each sphere the begin of its edges to smaller indices.
+// Adds each edge once, and for each sphere where its edges to smaller indices begin.
 void DeviceLevel::add_edges(const SphereGraph& graph) {
   std::vector<Edge> edges;
   std::vector<std::uint32_t> begins{0};

@@ -69,9 +69,11 @@ class GroupMeasure {
  private:
   using Measure = CellMeasure<Surface>;
   static constexpr bool kFloods = !Surface::kTellsInside;
-  static constexpr unsigned kLanes = 4;          // lanes of a block task outside planar clusters
-  static constexpr unsigned kSamplesOfBall = 4;  // take as long as the rest of a classification
-  // Adds at most a task per thread and round to a list: one per task of a cut cluster, else two.
+  static constexpr unsigned kLanes = 4;  // lanes of a block task outside planar clusters
+  static constexpr unsigned kSamplesOfBall =
+      4;  // classifying a ball takes as long as so many samples
+  // A round adds at most one task per thread to a list: one for each block task of a cut cluster,
+  // two for each other.
   static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
 
   __device__ void clear_seen() {
@@ -88,7 +90,8 @@ class GroupMeasure {
     }
     return best;
   }
-  // Classifies one cluster with all threads of a slot. Its first thread notes the result.
+  // Classifies the cluster of one task group with all threads of a slot. Its first thread notes the
+  // result.
   __device__ void look_at(std::uint32_t c, unsigned slot, const Subwarp& lanes) {
     const TaskGroup& chunk = work_.level.chunks[c];
     const Vec3 at = work_.to_surface * chunk.ball.center;

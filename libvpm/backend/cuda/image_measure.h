@@ -1,10 +1,11 @@
 // Runs the first step of a query where a camera has seen the surface, for a level with no more task
 // groups than a launch has warps: each warp takes one group and waits for no other. It classifies
-// the group's cells and sums what is behind the surface by no more than the tool's radius.
+// the group's cells and sums what is behind the surface by no more than the tool radius.
 //
-// Some lanes work for each block task. A launch takes as long as its slowest warp, so what may be
-// needed is computed side by side before it is known to be. Loading instructions comes first, so
-// each step stands here once, and all lanes go through it together.
+// Each block task has 4 or 16 lanes of the warp. A launch takes as long as its slowest warp, so
+// what may be needed is computed side by side, before it is known whether it is. Loading
+// instructions takes longest, so each step stands in the code once, and all lanes go through it
+// together.
 #pragma once
 
 #include <type_traits>
@@ -25,7 +26,7 @@ struct alignas(16) ImageShared {
     PixelRectangle pixels;  // the cell's
     double farthest = 0;
   };
-  // Describes the cluster from here on.
+  // What follows is of the cluster.
   DepthSurface::BallClass in_ball;
   Vec3 middle;
   SurfaceSample on_surface, around[kPlacesAround];
@@ -33,8 +34,8 @@ struct alignas(16) ImageShared {
   OfTask units[TaskGroup::kTasks];
 };
 
-// Samples the surface about the middle of a cluster, which has been sampled, by four lanes of a
-// warp.
+// Samples the surface at the four places about a cluster's middle, each by one lane of a warp. The
+// middle has been sampled before.
 struct SampleByWarp {
   ImageShared& shared;
 
@@ -89,11 +90,12 @@ class ImageTaskGroup {
   using Measure = CellMeasure<DepthSurface>;
   using PieceSample = Measure::PieceSample;
 
-  // Names the lanes of a task that classify its balls, and the warp's lane for the cluster's ball.
+  // Lanes of a task that classify its balls, and the lane of the warp that classifies the
+  // cluster's.
   static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
                             kOfCluster = BlockTask::kBalls;
 
-  // Tells how a block task counts.
+  // How a block task counts.
   enum class Counts {
     not_at_all,
     pushed,      // its cell is behind the surface of a planar cluster
@@ -396,7 +398,7 @@ class ImageTaskGroup {
   ImageShared::OfTask& seen_;
   ImageSums& sums_;
 
-  Vec3 middle_;  // the ball that this lane classified
+  Vec3 middle_;  // centre of the ball that this lane classified, surface frame, m
   double radius_ = 0;
   DepthSurface::BallClass look_;
   SurfaceSample on_surface_;  // sample at the block's middle

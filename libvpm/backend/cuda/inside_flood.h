@@ -89,7 +89,8 @@ class UnionFind {
 struct NoShared {};
 
 // Finishes a query where a camera has seen the surface. The first step has added what is behind it
-// by no more than the tool's radius; pieces further behind need the support of cut cells' planes.
+// by no more than the tool radius; pieces further behind count if the plane of a cut cell supports
+// them.
 template <class Team>
 class CameraVisibility {
  public:
@@ -130,17 +131,18 @@ class CameraVisibility {
   CutCells<Team> cut_;
 };
 
-// Bounds the cells of a level that one block floods in its own memory.
+// Most cells of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodCells = 3072;
-inline constexpr std::uint32_t kFloodEdges = 4096;  // bound of its edges
+inline constexpr std::uint32_t kFloodEdges = 4096;  // most of its edges
 __host__ __device__ inline bool is_small(const LevelView& level) {
   return level.count <= kFloodCells && level.edge_count <= kFloodEdges;
 }
 
 struct FloodShared {
   std::uint32_t words[kFloodCells];
-  Edge edges[kFloodEdges];         // from the front: between cells that the flood may pass
-  unsigned flood_states, entries;  // from the back: by which it may enter
+  Edge edges[kFloodEdges];  // from the front: passages, between two cells that the flood may pass
+  unsigned flood_states, entries;  // numbers of passages, and of entries, by which it may enter and
+                                   // which lie at the back
 };
 // Holds what a block needs: its own flood, or the list of noted cells.
 union FloodBlock {
@@ -176,7 +178,7 @@ class Flood {
     if (in_shared_) bring_to_shared();
   }
 
-  // True if the first step, when done, has left anything.
+  // True always: the flood comes after the first step.
   __device__ static bool has_more(unsigned) { return true; }
   // Returns this thread's part of the result. Call from all threads of the team.
   __device__ RawResult run() {
@@ -260,8 +262,8 @@ class Flood {
     }
   }
 
-  // Joins the cells of a large level. Visits edges from the cells that have a word, each edge from
-  // its larger cell, which has few.
+  // Joins the cells of a large level: goes over the cells that have a word, and over the edges from
+  // each to smaller cells, which are few.
   __device__ void join_cells() {
     const auto join_ends = [&](const Edges& together) {
       std::uint32_t one[kEdges] = {}, other[kEdges] = {};
@@ -295,8 +297,8 @@ class Flood {
     });
   }
 
-  // Floods in the block's memory: lists the edges that matter, then passes all of them in each
-  // round.
+  // Floods in the block's memory: lists the edges that matter, then goes over all of them in rounds
+  // until none changes anything.
   __device__ void flood_in_shared() {
     for_edges([&](const Edges& together) {
       look_at(
@@ -347,8 +349,8 @@ class Flood {
     return cut_.at(cut).is_behind(center(i));
   }
 
-  // Closes to the flood those cells that another surface may hide and that lie before the plane of
-  // the nearest cut cell.
+  // Decides about cells that another surface may hide: one behind the plane of the nearest cut cell
+  // is not hidden, so the flood may pass it.
   __device__ __noinline__ void decide_hidden() {
     const Subwarp warp(32);
     for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
@@ -374,8 +376,8 @@ class Flood {
     return result;
   }
 
-  // Adds a cell that counts: a cut one, or one that the flood reaches. The flood also passes hidden
-  // ones.
+  // Adds a cell that counts: a cut one, or one with a volume that the flood has reached. The flood
+  // also passes cells of which nothing counts.
   __device__ void add_cell(std::uint32_t i, std::uint32_t word, RawResult& result) const {
     const bool cut = (word & cell_bit::cut) != 0;
     const ToolSum sum = notes_.sums[i];

@@ -7,8 +7,9 @@
 
 namespace vpm::cuda {
 
-// Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
-// limit the refined measure: fewer finish a pose sooner, more get through more poses.
+// Threads of a block: kThreads where all blocks share one pose, kBatchThreads where each block has
+// a pose of its own. Registers limit the refined measure: fewer threads finish one pose sooner,
+// more threads get through more poses.
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kMostThreads = kBatchThreads;
 static_assert(kThreads <= kMostThreads);
@@ -20,14 +21,14 @@ __device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
   return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
 }
 
-// Counts the places about its middle at which a cluster is sampled (SampleInTurn). Returns one of
-// them; an index would put them all in local memory.
+// Number of places about its middle at which a cluster is sampled (SampleInTurn). place_of()
+// chooses one of them by comparisons: an index would put them all in local memory.
 inline constexpr unsigned kPlacesAround = 4;
 __device__ inline Vec3 place_of(const Vec3 (&places)[kPlacesAround], unsigned k) {
   return k == 0 ? places[0] : k == 1 ? places[1] : k == 2 ? places[2] : places[3];
 }
 
-// Counts the 64-bit terms of a ToolSum or ContactPlane.
+// Number of 64-bit terms of a ToolSum, and of a ContactPlane.
 inline constexpr int kTerms = 7;
 template <class Sum>
 __device__ std::int64_t* terms_of(Sum& sum) {
@@ -39,7 +40,7 @@ __device__ std::int64_t* terms_of(Sum& sum) {
 template <class Sum>
 __device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   std::int64_t* const terms = terms_of(sum);
-  // Shuffles all terms in each step, so that they overlap.
+  // Shuffles all terms in one step, so that they wait together.
 #pragma unroll 1
   for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
 #pragma unroll
@@ -49,7 +50,8 @@ __device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   }
 }
 
-// Adds up the rows of a subwarp's lanes for its first lane. Missing rows count as 0.
+// Adds up the rows that the lanes of a subwarp hold; its first lane receives the sum. Lanes without
+// a row count as 0.
 __device__ inline void add_up(const Subwarp& subwarp, ClippedMoments& row) {
 #pragma unroll 1
   for (unsigned half = subwarp.width / 2; half > 0; half /= 2) {

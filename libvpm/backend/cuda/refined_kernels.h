@@ -16,8 +16,9 @@
 namespace vpm::cuda {
 namespace {
 
-// Sets the blocks per multiprocessor. Two spill no registers for an image and finish a pose of up
-// to kSpheresOfFewBlocks spheres sooner; three do with more spheres, or for points.
+// Blocks per multiprocessor. With two, a query of an image spills no registers and a pose of up to
+// kSpheresOfFewBlocks spheres is answered sooner; with three, one of more spheres is, and one among
+// points.
 constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
 constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
 
@@ -122,7 +123,8 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
   launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
 }
 
-// Answers one query; the last block floods alone. For levels of few cells.
+// Answers one query of a level of few cells: all blocks classify and measure, and the last to
+// finish floods alone.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kManyBlocks)
     one_pose_small(const __grid_constant__ RefinedLaunch<Surface> launch,
@@ -164,7 +166,7 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
   unsigned far = 0;
   const auto has_more = [&] { return Rest::has_more(far); };
   if (is_last) {
-    const std::uint32_t word = word_of(totals->result);  // loaded while `far` is
+    const std::uint32_t word = word_of(totals->result);  // read together with `far`
     far = read(launch.counters->far);
     if (!has_more()) send(word, now() - met, launch.answer, sequence);
   }
@@ -209,7 +211,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ Pose to_surface;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
-  // Keeps each thread's sums, which are seldom used, out of its registers. A flood has none.
+  // Each thread's sums, which are seldom used, lie here and not in its registers. A query with a
+  // flood has none.
   __shared__ RawResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
   RawResult of_flood, &found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
   __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory

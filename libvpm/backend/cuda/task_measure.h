@@ -40,8 +40,8 @@ struct TaskLists {
   }
 };
 
-// Packs a block task to be classified: its index in a task group, the slot of the threads that
-// classified that, and the cluster's class.
+// Packs a block task to be classified: its index in its task group, the slot of the threads that
+// classified the group's cluster, and the class of that.
 struct SeenTask {
   std::uint16_t bits;
 
@@ -63,7 +63,8 @@ static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGrou
 // Lays out a block's shared memory.
 struct MeasureShared {
   static constexpr unsigned kSeen = kMeasureThreads * TaskGroup::kTasks;
-  SeenTask seen[kSeen];  // not planar from the front, of cut clusters from the end
+  SeenTask seen[kSeen];  // from the front those of clusters that are not planar, from the end those
+                         // of cut ones
   unsigned seen_count, clipped_count;
   std::uint32_t pushed[kMeasureThreads];  // task groups of uniform clusters
   unsigned pushed_count;
@@ -257,7 +258,7 @@ class TaskMeasure {
     return result;
   }
 
-  // Notes the result of a task, which one thread calls for its subwarp.
+  // Notes the result of a task. One thread of its subwarp calls this.
   __device__ void note_task(const Task& task, const CellResult& result) {
     const std::uint32_t i = task.cell;
     const CellClass found = class_of_result(result);
@@ -275,8 +276,8 @@ class TaskMeasure {
     if (cut) add_atomically(result.plane, work_.notes.planes[i]);
   }
 
-  // Notes that a cell counts; other threads may do so too. The cell's last word is used only in the
-  // next call, so that nobody waits for it.
+  // Notes that a cell counts; other threads may note the same cell. The word that it had before is
+  // used only in the next call, so that nobody waits for it.
   __device__ void count(std::uint32_t cell, std::uint32_t bits) {
     count_cell(words_before_, bits_added_, found_);
     words_before_ = atomicOr(&work_.notes.words[cell], bits);

@@ -49,8 +49,8 @@ struct WarpTask : BlockTask {
   BlockMass block_mass, cell_mass;
 };
 
-// Limits the spheres of levels with a task group for each warp; more have more groups than any
-// device has warps at once.
+// Most spheres of a level whose task groups get a warp each. Larger levels have more groups than
+// any device has warps at once.
 inline constexpr std::uint32_t kSpheresOfWarps = 8192;
 
 // Lists the block tasks of a small level for warps that take one group each: kWideTasks tasks with

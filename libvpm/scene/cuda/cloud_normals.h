@@ -73,7 +73,7 @@ class KeptColumn {
   __device__ float ye() const { return ye_; }
 
  private:
-  // Gives the first bits of the sums of dv^2 and of dv; the latter is signed and comes last.
+  // First bits of the sums of dv^2 and of dv; the latter is signed and comes last.
   static constexpr int kSecond = 8, kFirst = 20, kMostAway = kMaxWindow / 2;
   static_assert(kMaxWindow < 1 << kSecond);
   static_assert(kMostAway * (kMostAway + 1) * (2 * kMostAway + 1) / 3 < 1 << (kFirst - kSecond));

@@ -16,7 +16,7 @@ struct DepthSource {
   double counts_per_metre = 1;
 };
 
-// Sets the pixels per thread; images, and arrays made from them, have room for whole groups.
+// Pixels per thread; images, and arrays made from them, have room for whole groups.
 inline constexpr unsigned kPixelsAtOnce = 8;
 
 // Holds the results of an image's preparation, in memory that the host reads.

@@ -8,8 +8,8 @@
 
 namespace vpm::cuda {
 
-// Sets the margins, in pixels, within which neighbours decide a pixel: those whose normals are
-// averaged, and their windows.
+// Margins, in pixels, within which neighbours decide a pixel: those whose normals are averaged, and
+// their windows.
 inline constexpr int kMarginOfMarks = kDenoisedReach,
                      kDenoiseMargin = kMarginOfMarks + kDenoisedRadius;
 

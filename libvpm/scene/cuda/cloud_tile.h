@@ -40,7 +40,7 @@ VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
   return wanted < most ? wanted : most;
 }
 
-// Is the radius of the default window, which kernels know at compile time.
+// Radius of the default window, which kernels know at compile time.
 inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
 
 // Holds inputs, parameters and outputs of the preparation of one image.

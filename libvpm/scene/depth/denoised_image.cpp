@@ -64,8 +64,8 @@ void unite_rows(const InverseDepthRange* __restrict above,
 // Sums down each column of the windows of some pixels of a row.
 class ColumnSums {
  public:
-  // Takes enough pixels that what is stored for the first ones has left the CPU's store queue when
-  // it is loaded across lanes, which CPUs do not forward.
+  // Enough pixels that what is stored for the first ones has left the CPU's store queue when it is
+  // loaded across lanes, which CPUs do not forward.
   static constexpr int kPixels = 8 * kTile;
 
   // Sums from pixel `first` of row v to the row's last tile.

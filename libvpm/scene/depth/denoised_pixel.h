@@ -7,8 +7,8 @@
 
 namespace vpm {
 
-// Sets the passes, each of which closes pixels next to the last, so holes of twice that width
-// close.
+// Number of passes. Each closes the pixels next to those that are known by then, so holes of twice
+// that width close.
 inline constexpr int kFillPasses = 2;
 
 // Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a
@@ -32,7 +32,7 @@ VPM_HD float between_neighbors(const Image& image, int width, int height, int u,
   return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0F;
 }
 
-// Sets the half width of a pixel's window, and the spacing of its two rings, in pixels.
+// Half the width of a pixel's window, and the spacing of its two rings, in pixels.
 inline constexpr int kDenoisedRadius = 3, kDenoisedAcross = DepthSurface::kAcross;
 inline constexpr int kDenoisedReach = 2 * kDenoisedAcross;
 

@@ -26,7 +26,7 @@ VPM_HD constexpr bool is_empty(const PixelRectangle& r) {
   return r.u0 > r.u1 || r.v0 > r.v1;
 }
 
-// Bounds the offset of a point from its pixel, in pixels, for which searches over pixels find it;
+// Largest offset of a point from its pixel, in pixels, at which searches over pixels find it;
 // float32 rounding and recovered intrinsics stay far below.
 inline constexpr double kPixelTolerance = 0.5;
 
@@ -75,14 +75,14 @@ struct DepthSampler {
   static constexpr int kMaxLevels = 16;
   // Limits width and height of an image, so that its coarsest tiles cover any ball three by three.
   static constexpr std::uint32_t kMostPixelsASide = 1U << kMaxLevels;
-  // Bounds the relative difference of inverse depths of pixels on one surface. A plane at 1 m seen
-  // by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
+  // Largest relative difference of inverse depths of pixels on one surface. A plane at 1 m seen by
+  // f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
   static constexpr double kJump = 0.03;
-  // Bounds the cosine (25 degrees) between normals of one smooth surface, noisy or curved; those of
-  // a crease differ by more.
+  // Least cosine (25 degrees) between normals of one smooth surface, noisy or curved; those of a
+  // crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
-  // Sets the pixels to either side at which windows of normals see one side of a crease each: they
-  // are up to twice as wide (7 pixels by default).
+  // Distance in pixels, to either side, at which windows of normals see one side of a crease each:
+  // they are up to twice as wide (7 pixels by default).
   static constexpr std::int32_t kAcross = 4;
 
   Intrinsics k;
@@ -134,7 +134,7 @@ struct DepthSampler {
   }
 
  private:
-  // Bounds the cosine between ray and normal below which the normal does not scale a distance.
+  // Cosine between ray and normal below which the normal does not scale a distance.
   static constexpr double kGrazing = 0.05;
 
   // Describes the image in the direction of a place.

@@ -21,12 +21,12 @@ inline bool is_smooth(DiskKind kind) {
 
 constexpr std::uint32_t kFewOpposite = 5;
 constexpr double kStandsOff = 2;  // radii, from the disks about it
-// Fewer alike disks, also within twice the distance, make a stray; fewer than kFewAlike an outlier,
-// if others are unlike it.
+// A disk with fewer alike ones than kFewTogether, also within twice the distance, is a stray; one
+// with fewer than kFewAlike, and with unlike ones about it, an outlier.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
-// Bounds the parts of unlike disks, relative to the alike ones.
+// Most unlike disks about a disk, as a part of the alike ones.
 constexpr double kUnlikeOfSmooth = 0.1;
-constexpr double kUnlikeOfCalm = 0.02;  // few enough to be noise
+constexpr double kUnlikeOfCalm = 0.02;  // so few may be noise
 
 bool is_among_its_like(const Neighborhood& around) {
   return around.unlike <= kUnlikeOfSmooth * around.alike;

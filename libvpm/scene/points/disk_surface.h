@@ -62,7 +62,8 @@ struct DiskSurface {
   PointNumbers radii{};
   NormalCones cones{};
 
-  // Samples the nearest disk, which stands for the surface. Unknown only in an empty cloud.
+  // Samples the nearest disk, which stands for the surface. Only in an empty cloud nothing is
+  // known.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
     return read_point(x, feet.nearest(x, HUGE_VAL, near));
   }
@@ -132,10 +133,11 @@ struct DiskSurface {
 #endif
   }
 
-  // Finds another wall for a body of this radius about x, which is nearest to `own`, by a point of
-  // that. Searches at four places further behind, on each side, and keeps the wall that takes the
-  // most of the body, among those with a cosine below `unlike` to `own`. Only where a disk may be
-  // nearest to such a place and faces elsewhere: beyond the last point of a cloud there is no wall.
+  // Finds a second wall near a body of this radius about x. `own` is the wall that x is nearest to,
+  // `point` a point of it. Asks which disk is nearest at four places, to four sides of x and
+  // further behind `own`. Walls count whose normals have a cosine below `unlike` with that of
+  // `own`; of these it keeps the one whose border with `own` leaves it the largest part of the
+  // body. Returns false if there is none: beyond the last point of a cloud there is no wall.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const;
 
@@ -184,21 +186,23 @@ struct DiskSurface {
   }
 
  private:
-  static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more take longer than cells
-  static constexpr std::uint32_t kFewestAside = 3;     // points of a cluster on each side
-  static constexpr double kSmoothCosine = 0.9;         // as in an image
+  static constexpr std::uint32_t kMostOfPatch =
+      1024;  // points; with more, asking cell by cell is faster
+  static constexpr std::uint32_t kFewestAside = 3;  // points of a cluster on each side
+  static constexpr double kSmoothCosine = 0.9;      // as in an image
   // Disks that face elsewhere by more than 60 degrees are of another wall. At 90 noise would decide
   // which disks of a perpendicular wall are.
   static constexpr double kOtherWall = 0.5;
-  // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
+  // Part of a ball's radius whose disks give the mean plane: over these a paraboloid has the mean
+  // height that it has over a cube in the ball.
   static constexpr double kMiddle = 0.65;
   static constexpr double kOffPlane = 0.5;  // part of the tolerance
-  // Sets how many radii aside, and as many further behind, other walls are searched.
+  // Other walls are searched this many radii to the side, and as many further behind.
   static constexpr double kFurther = 0.85;
   static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
   // The wall beyond a border is searched again this many radii from it.
   static constexpr double kBeyondBorder = 0.2;
-  // Sets the rim of disks, in sampling radii, so that noise leaves no gaps between them.
+  // Radius of a disk's rim, in sampling radii: so wide that noise leaves no gaps between disks.
   static constexpr double kRim = 3;
   static constexpr double kSlot = -0.8;  // largest cosine between the sides of a slot
 
@@ -225,8 +229,8 @@ struct DiskSurface {
   VPM_HD double rim_of(std::uint32_t i) const {
     return kRim * radii.of_points[i];
   }
-  // Uses an index: code by nvcc 13.0 for sm_90 was seen to read through a null pointer behind its
-  // check.
+  // Asks by an index, not by a pointer: code by nvcc 13.0 for sm_90 was seen to read through a null
+  // pointer after checking it.
   VPM_HD bool knows_second(std::uint32_t i) const {
     return second_of[i] != kNoPoint;
   }
@@ -385,8 +389,8 @@ VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
 // Returns the cones of all normals that the disks know, for the nodes that searches step to.
 std::vector<ConeQuad> cones_of(const DiskSurface& disks);
 
-// Holds disks that are denoised once per cloud, with second planes close to them; README.md has the
-// reasons.
+// Disks as queries read them, made once for each cloud, with the second planes close to them;
+// README.md has the reasons.
 struct DenoisedDisks {
   std::vector<Vec3f> feet, normals;      // one per disk
   std::vector<std::uint32_t> second_of;  // per disk: index into seconds, or kNoPoint
@@ -394,8 +398,8 @@ struct DenoisedDisks {
   std::vector<SecondPlane> seconds;
 };
 
-// Returns the denoised disks of `measured`, the points as they are with boxes about them, which
-// have these sampling radii, m. The result does not depend on the number of threads.
+// Returns the denoised disks of `measured`, which holds the points as measured, in a tree; `radii`
+// are their sampling radii, m. The result does not depend on the number of threads.
 DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii);
 
 // Returns the measured points themselves as disks.

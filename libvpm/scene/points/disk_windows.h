@@ -19,11 +19,11 @@ struct Disk {
   Vec3 place, normal;
 };
 
-// Sorts pairs of disks by the cosine between their normals.
+// Limits of the cosine between the normals of two disks.
 inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
 inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
 
-// Bounds the height, as a part of the ball's radius, at which another disk shows the same surface.
+// Largest height, as a part of the ball's radius, at which another disk shows the same surface.
 inline constexpr double kOneSurface = 0.7;
 
 // Sum of planes to be averaged, with the heights of a place above them.
@@ -55,13 +55,13 @@ struct DiskInBall {
   double reach = 0;  // radius of the ball, m
 };
 
-// Sums up the disks about four disks at once by vectors. `near` holds all in their balls, and
-// others.
+// Sums up, for four disks at once by vectors, the disks in the ball about each. `near` holds all of
+// these, and may hold others.
 void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
                  Neighborhood (&found)[4]);
 
-// Sets the radii of windows in sampling radii: a little wider than the 7 x 7 pixels by which
-// normals are estimated, and wide enough to reach beyond windows that hold both sides of a crease.
+// Radii of windows, in sampling radii: kWindow is a little wider than the 7 x 7 pixels by which
+// normals are estimated, kWide reaches beyond windows that hold both sides of a crease.
 inline constexpr double kWindow = 6.3, kWide = 14;
 
 // Limits of windows, since disks may be much wider than their spacing (seen at a grazing angle by
@@ -155,7 +155,8 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
-// Bounds a sheet's thickness, as a part of the sideways distance between its sides' disks.
+// Largest thickness of a sheet, as a part of the sideways distance between the disks of its two
+// sides.
 inline constexpr double kNoThickness = 1e-6;
 
 // Returns the second plane if each plane's disks lie behind the other, or in front of it, by at

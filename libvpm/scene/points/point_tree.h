@@ -42,7 +42,7 @@ struct alignas(16) BoxQuad {
 // predicts.
 class NodeStack {
  public:
-  // Has room for trees of up to 2^22 leaves: three of each quad on the way down, and one more.
+  // Room for a tree of 2^22 leaves: three nodes of each quad on the way down, and one more.
   static constexpr int kRoom = 3 * 11 + 1;
 
   // Returns the key above which a node holds no point nearer than, or as near as, `squared`, m^2.
@@ -275,8 +275,8 @@ struct PointTree {
     VPM_HD bool operator()(std::uint32_t) const { return true; }
   };
 
-  // Filters a search, by node and by point with squared distances. within() bounds the distance of
-  // the best point, if that is not the nearest of all.
+  // Filters of a search, asked for nodes and points with their squared distances. within() returns
+  // a distance within which the best point surely lies, m; 0 if that is the nearest of all.
   struct EachPoint {
     static double within(const PointTree&) { return 0; }
     VPM_HD bool takes_node(std::uint32_t, double) const { return true; }
