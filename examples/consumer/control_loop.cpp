@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   try {
     const vpm::Tool tool = vpm::Tool::read(argv[1]);
     check(tool, 1);
-    const double size = tool.bounding_radius();
+    const double size = tool.radius();
     vpm::QueryOptions options;
     options.stiffness = 500 / (size * size);  // N/m^3: as stiff as the coupling
     vpm::Query query(tool, options);

@@ -22,8 +22,8 @@ Vec3 Tool::center_of_mass() const {
   return HandleAccess::held(*this).center_of_mass;
 }
 
-double Tool::bounding_radius() const {
-  return HandleAccess::held(*this).reach;
+double Tool::radius() const {
+  return HandleAccess::held(*this).radius;
 }
 
 double Tool::gyration() const {

@@ -134,7 +134,7 @@ VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& leve
   for (std::size_t i = 0; i < level.sphere_count; ++i) {
     level.cell_volume.push_back(n.frame.cubed() * cells.volume[i]);
     level.cell_centroid.push_back(n.frame.from(cells.centroid[i]));
-    level.cell_reach.push_back(n.frame.unit * cells.radius[i]);
+    level.cell_radius.push_back(n.frame.unit * cells.radius[i]);
   }
   const double size = std::cbrt(n.mass.volume) / samples_per_length(level.sphere_count);
   CutCells all =
@@ -163,7 +163,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
   ToolModel model;
   model.volume = mass.volume;
   model.center_of_mass = mass.center_of_mass;
-  model.reach = bounding_radius(packing.solid, mass.center_of_mass);
+  model.radius = bounding_radius(packing.solid, mass.center_of_mass);
   model.solid_hash = content_hash(packing.solid);
   model.spheres = packing.spheres;
   const auto counts = level_counts(options, static_cast<std::uint32_t>(packing.spheres.size()));

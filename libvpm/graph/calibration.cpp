@@ -124,14 +124,14 @@ double fraction_inside(const ToolModel& model, const Level& level, const CellClu
                        const Cut& cut) {
   double sum = 0;
   for (const CellCluster& cluster : clusters.clusters) {
-    const bool patch = may_be_planar(cluster.reach, model.reach);
-    const Cut of_patch = cut.plane_at(cluster.center, cluster.reach);
+    const bool is_planar = may_be_planar(cluster.reach, model.radius);
+    const Cut of_plane = cut.plane_at(cluster.center, cluster.reach);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const std::uint32_t i = clusters.cells[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
         const CellBlock& block = level.blocks[b];
-        sum +=
-            fraction_inside(level, block, patch ? of_patch : cut.plane_at(widen(block.center), 0));
+        sum += fraction_inside(level, block,
+                               is_planar ? of_plane : cut.plane_at(widen(block.center), 0));
       }
     }
   }

@@ -55,7 +55,7 @@ class SceneSum {
     result.volume = tool.volume * result.volume_fraction;
     result.wrench.force = tool.volume * (rotation * Vec3{real(1), real(2), real(3)});
     result.wrench.torque =
-        tool.volume * (tool.reach * (rotation * Vec3{real(4), real(5), real(6)}));
+        tool.volume * (tool.radius * (rotation * Vec3{real(4), real(5), real(6)}));
     result.boundary = boundary_;
     result.inside = inside_;
     result.points = points_;

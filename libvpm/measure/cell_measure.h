@@ -30,14 +30,14 @@ VPM_HD inline CellClass class_of_result(const CellResult& result) {
 }
 
 // Adds a mass wholly behind the surface, pushed along a normal in the tool's axes.
-VPM_HD inline void add_whole(const ToolReach& tool, const BlockMass& mass, Vec3 normal,
+VPM_HD inline void add_whole(const ToolRadius& tool, const BlockMass& mass, Vec3 normal,
                              ToolSum& sum) {
   sum.add(mass.weight, normal, tool.inverse * mass.centroid);
 }
 // Adds the part of a block behind a plane: nothing, all of its mass, or the clipped moments of a
 // cut one. `normal` is the plane's, in the tool's axes.
 VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
-                                const ClippedMoments& clipped, Vec3 normal, const ToolReach& tool,
+                                const ClippedMoments& clipped, Vec3 normal, const ToolRadius& tool,
                                 ToolSum& sum) {
   if (side == PlaneSide::behind) add_whole(tool, mass, normal, sum);
   if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
@@ -53,11 +53,11 @@ template <MeasuredBody Surface>
 class CellMeasure {
  public:
   // Maps coordinates about the tool's centre of mass to the surface's frame by `to_surface`.
-  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
+  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolRadius tool_radius,
                      const CellView& cell)
       : surface_(surface),
         to_surface_(to_surface),
-        tool_reach_(tool_reach),
+        tool_radius_(tool_radius),
         cell_(cell),
         center_(to_surface * cell.center) {}
 
@@ -72,7 +72,7 @@ class CellMeasure {
     samples.flush(*this, result);
     if (result.is_far && result.plane.count > 0) {
       const CutCell own{result.plane, center_, cell_.reach};
-      add_far([&](Vec3 x, Vec3 foot) { return own.supports(x, foot, tool_reach_.length); },
+      add_far([&](Vec3 x, Vec3 foot) { return own.supports(x, foot, tool_radius_.length); },
               result.sum);
     }
     return result;
@@ -104,7 +104,7 @@ class CellMeasure {
   template <class Supports>
   VPM_HD ToolSum whole(const Supports& supports, const BlockMass& mass) const {
     ToolSum sum;
-    const bool compact = is_compact(cell_.reach, tool_reach_.length);
+    const bool compact = is_compact(cell_.reach, tool_radius_.length);
     if (whole_part(compact, true, false) == WholePart::cell) {
       add_whole_piece(supports, piece_of(mass, cell_), sum);
       return sum;
@@ -136,7 +136,7 @@ class CellMeasure {
     const auto in_ball = surface_.classify_ball(result.center, block.radius);
     result.point = in_ball.point;
     result.found = class_of_block(
-        surface_, in_ball, result.center, block.radius, tool_reach_,
+        surface_, in_ball, result.center, block.radius, tool_radius_,
         [&] { return surface_.sample(result.center); }, result.plane);
     return result;
   }
@@ -176,7 +176,7 @@ class CellMeasure {
     sampled.is_inside =
         on_surface.known && side_of_plane(on_surface.distance, piece.radius) != PlaneSide::before;
     if (!sampled.is_inside) return sampled;
-    sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_reach_);
+    sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_radius_);
     return sampled;
   }
   VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
@@ -196,7 +196,7 @@ class CellMeasure {
     const ToolPiece part = cut ? part_behind(piece, sampled) : piece;
     const Vec3 normal = cut ? sampled.on_surface.normal : way_out;
     OtherWall other;
-    if (is_divisible(part.extent, tool_reach_) &&
+    if (is_divisible(part.extent, tool_radius_) &&
         finds_other_wall(near, sampled.x, {normal, sampled.on_surface.foot},
                          sampled.on_surface.point, part.extent, kTwoWalls, other))
       add_divided(part, sampled.x, normal, other, sum);
@@ -289,7 +289,7 @@ class CellMeasure {
     if (side == PlaneSide::cut)
       sums = clipped(plane, cell_.samples + block.begin, block.end - block.begin);
     if (sums.is_cut) add_to_plane(center, plane, result.plane);
-    add_by_plane(side, cell_.masses[b], sums, plane.normal, tool_reach_, result.sum);
+    add_by_plane(side, cell_.masses[b], sums, plane.normal, tool_radius_, result.sum);
   }
   VPM_HD const Surface& surface() const { return surface_; }
   VPM_HD const Pose& to_surface() const { return to_surface_; }
@@ -297,13 +297,13 @@ class CellMeasure {
 
  private:
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
-    return tool_reach_.inverse * about_center_of_mass;
+    return tool_radius_.inverse * about_center_of_mass;
   }
   VPM_HD Vec3 relative(Vec3 x) const { return 1 / cell_.reach * (x - center_); }
 
   const Surface& surface_;
   const Pose& to_surface_;
-  ToolReach tool_reach_;
+  ToolRadius tool_radius_;
   CellView cell_;
   Vec3 center_;  // in the surface's frame
 };

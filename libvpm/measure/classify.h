@@ -10,16 +10,16 @@
 namespace vpm {
 
 // Holds the lengths of the tool that the rules compare with, m.
-struct ToolReach {
+struct ToolRadius {
   double length = 0;            // radius about the centre of mass that encloses the tool
   double inverse = 0;           // 1 / length, 1/m: scales arms
   double supported_beyond = 0;  // places further behind a seen surface need the support of a plane
 
-  ToolReach() = default;
-  ToolReach(double reach, OccludedSpace occluded)
-      : length(reach),
-        inverse(1 / reach),
-        supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
+  ToolRadius() = default;
+  ToolRadius(double radius, Shadows shadows)
+      : length(radius),
+        inverse(1 / radius),
+        supported_beyond(shadows == Shadows::solid ? HUGE_VAL : radius) {}
 };
 
 // Largest radius, in tool radii, of a cell that counts by its centroid where it is wholly behind
@@ -57,8 +57,8 @@ enum class ClusterClass : std::uint8_t {
   ambiguous,    // the surface may pass through it: its parts decide
   no_surface,   // the surface does not pass; a surface sample tells whether it is behind one
   by_middle,    // planar without a surface: the sample at its middle decides (class_by_middle)
-  behind,       // behind the surface, maybe further than the tool's radius
-  behind_near,  // behind it, no place further than the tool's radius
+  behind,       // behind the surface, maybe further than the tool radius
+  behind_near,  // behind it, no place further than the tool radius
   cut,          // planar: the surface passes through it as one plane
   uniform,      // planar and behind_near: all of it is pushed along one normal
 };
@@ -120,10 +120,10 @@ VPM_HD bool may_have_plane(const Surface& surface, const typename Surface::BallC
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
 // `plane`: it passes within kSheetReach of the cluster's radii, and no second surface is near.
 // `sample_all` is SampleInTurn, or samples the same places side by side.
-template <MeasuredBody Surface, class ReadAll>
+template <MeasuredBody Surface, class SampleAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
-                                const ReadAll& sample_all, TangentPlane& plane) {
+                                const SampleAll& sample_all, TangentPlane& plane) {
   const double near = kSheetReach * radius;
   OtherWall other;
   return may_have_plane(surface, in_ball, radius, tool_radius) &&
@@ -144,11 +144,11 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
 
 // True if a place at this signed distance, m, is inside only if a plane supports it.
 template <class Surface>
-VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
+VPM_HD bool is_far_behind(double signed_distance, const ToolRadius& tool) {
   return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);
 }
 // True if a body of this radius, m, is divided between two walls; smaller ones are pushed to one.
-VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
+VPM_HD inline bool is_divisible(double radius, const ToolRadius& tool) {
   return radius >= kLeastDivided * tool.length;
 }
 
@@ -174,7 +174,7 @@ enum class BlockClass : std::uint8_t {
 // be.
 template <MeasuredBody Surface, class Read>
 VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::BallClass& in_ball,
-                                 Vec3 center, double radius, const ToolReach& tool,
+                                 Vec3 center, double radius, const ToolRadius& tool,
                                  const Read& read, TangentPlane& plane) {
   if (in_ball.side == Side::free) return BlockClass::free;
   if (in_ball.side != Side::ambiguous) return BlockClass::uncut;

@@ -29,7 +29,7 @@ enum class FloodState : std::uint8_t {
   middle,   // unknown: the surface sample at the middle of its cluster decides
   open,     // passable, its squared gap is known
   planar,   // passable, its gap is that to the plane of its cluster
-  near,  // passable, no place of its cluster is further behind the surface than the tool's radius
+  near,     // passable, no place of its cluster is further behind the surface than the tool radius
 };
 
 // The same of a cell on a device, as a word of bits that threads add in any order. Where a camera
@@ -117,9 +117,9 @@ VPM_HD inline double squared_gap(const SurfaceSample& on_surface) {
 }
 
 // True if a place at this squared distance, m^2, behind a surface may merely be hidden by it: it is
-// further away than the tool's radius. The plane of the nearest cut cell then decides.
-VPM_HD inline bool is_hidden_cell(double gap_squared, double tool_reach) {
-  return !(gap_squared <= tool_reach * tool_reach);
+// further away than the tool radius. The plane of the nearest cut cell then decides.
+VPM_HD inline bool is_hidden_cell(double gap_squared, double tool_radius) {
+  return !(gap_squared <= tool_radius * tool_radius);
 }
 
 // True if a cell at this squared distance, m^2, from the surface is behind the same sheet as its

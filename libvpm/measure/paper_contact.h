@@ -66,10 +66,10 @@ VPM_HD inline bool lets_in(const Sphere& boundary, Vec3 normal, const Sphere& ne
 struct ToolMeasures {
   double volume = 0;
   Vec3 center_of_mass;
-  double reach = 0;
+  double radius = 0;
 };
 inline ToolMeasures measures_of(const ToolModel& tool) {
-  return {tool.volume, tool.center_of_mass, tool.reach};
+  return {tool.volume, tool.center_of_mass, tool.radius};
 }
 
 // Adds the mean cap of a boundary sphere (step 6). Caps and spheres lie in disjoint spheres inside
@@ -77,11 +77,11 @@ inline ToolMeasures measures_of(const ToolModel& tool) {
 VPM_HD inline void add_boundary(const ToolMeasures& tool, const Sphere& s,
                                 const PaperContact& contact, Vec3 normal, ToolSum& sum) {
   sum.add(contact.mean_cap(s) / tool.volume, normal,
-          (contact.mean_place(s) - tool.center_of_mass) / tool.reach);
+          (contact.mean_place(s) - tool.center_of_mass) / tool.radius);
 }
 VPM_HD inline void add_inside(const ToolMeasures& tool, const Sphere& s, Vec3 normal,
                               ToolSum& sum) {
-  sum.add(volume(s) / tool.volume, normal, (s.center - tool.center_of_mass) / tool.reach);
+  sum.add(volume(s) / tool.volume, normal, (s.center - tool.center_of_mass) / tool.radius);
 }
 
 }  // namespace vpm

@@ -19,7 +19,7 @@ constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
 struct ToolRecord {
   double volume;
   Vec3 center_of_mass;
-  double reach;
+  double radius;
 };
 struct LevelRecord {
   double epsilon;
@@ -57,7 +57,7 @@ Level level_of(const LevelRecord& record, const file::Reader& reader, std::uint3
                 reader.read<std::uint32_t>(kGridSpheres, k)};
   level.cell_volume = reader.read<double>(kCellVolume, k);
   level.cell_centroid = reader.read<Vec3>(kCellCentroid, k);
-  level.cell_reach = reader.read<double>(kCellReach, k);
+  level.cell_radius = reader.read<double>(kCellReach, k);
   level.block_begin = reader.read<std::uint32_t>(kBlockBegin, k);
   level.blocks = reader.read<CellBlock>(kBlocks, k);
   level.samples = reader.read<CellSample>(kSamples, k);
@@ -73,7 +73,7 @@ void add_level(file::Writer& writer, const Level& level, std::uint32_t k) {
   writer.add(kGridSpheres, k, std::span(level.grid.spheres));
   writer.add(kCellVolume, k, std::span(level.cell_volume));
   writer.add(kCellCentroid, k, std::span(level.cell_centroid));
-  writer.add(kCellReach, k, std::span(level.cell_reach));
+  writer.add(kCellReach, k, std::span(level.cell_radius));
   writer.add(kBlockBegin, k, std::span(level.block_begin));
   writer.add(kBlocks, k, std::span(level.blocks));
   writer.add(kSamples, k, std::span(level.samples));
@@ -86,7 +86,7 @@ ToolModel model_of(const file::Reader& reader) {
   ToolModel model;
   model.volume = tool[0].volume;
   model.center_of_mass = tool[0].center_of_mass;
-  model.reach = tool[0].reach;
+  model.radius = tool[0].radius;
   const nlohmann::json& header = reader.header();
   const nlohmann::json hash = header.value("solid_hash", nlohmann::json());
   if (!hash.is_string()) reader.refuse_file("the header has no solid_hash", "make the file again");
@@ -154,7 +154,7 @@ void write_tool_model(const std::string& path, const ToolModel& model, const Sol
   file::Writer writer(
       file::Kind::tool_model,
       {{"unit", "m"}, {"solid_hash", model.solid_hash}, {"provenance", model.provenance}});
-  const ToolRecord tool{model.volume, model.center_of_mass, model.reach};
+  const ToolRecord tool{model.volume, model.center_of_mass, model.radius};
   writer.add(kTool, 0, std::span(&tool, 1));
   writer.add(kSpheres, 0, std::span(model.spheres));
   std::vector<LevelRecord> records;

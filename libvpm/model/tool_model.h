@@ -75,7 +75,7 @@ struct Level {
   std::vector<double> cell_volume;
   std::vector<Vec3> cell_centroid;
   // Largest distance of a cell's points from its sphere's centre, m.
-  std::vector<double> cell_reach;
+  std::vector<double> cell_radius;
   // Row offsets: blocks of each cell; spheres + 1 entries.
   std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;
@@ -91,7 +91,7 @@ struct LevelError {
 struct ToolModel {
   double volume = 0;       // volume of the solid, m^3
   Vec3 center_of_mass;     // centre of mass of the solid; blocks and samples are relative to it
-  double reach = 0;        // largest distance of the solid from center_of_mass, m
+  double radius = 0;       // largest distance of the solid from center_of_mass, m
   std::string solid_hash;  // content_hash of the solid
   std::vector<Sphere> spheres;          // largest first
   std::vector<Level> levels;            // at least one, ascending by sphere_count

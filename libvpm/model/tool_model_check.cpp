@@ -142,12 +142,12 @@ class LevelCheck {
   void cell_sum() const {
     const std::size_t n = level_.sphere_count;
     if (level_.cell_volume.size() != n || level_.cell_centroid.size() != n ||
-        level_.cell_reach.size() != n)
+        level_.cell_radius.size() != n)
       fail("its cells are not as many as its spheres");
     for (std::size_t i = 0; i < n; ++i) {
       if (!(level_.cell_volume[i] >= 0) || !std::isfinite(level_.cell_volume[i]) ||
-          !is_finite(level_.cell_centroid[i]) || !(level_.cell_reach[i] > 0) ||
-          !std::isfinite(level_.cell_reach[i]))
+          !is_finite(level_.cell_centroid[i]) || !(level_.cell_radius[i] > 0) ||
+          !std::isfinite(level_.cell_radius[i]))
         fail("cell " + std::to_string(i) + " is negative or not finite, or has no radius");
     }
   }
@@ -182,13 +182,13 @@ class LevelCheck {
   // Checks what keeps a query's fixed-point sums from overflowing: no piece lies beyond the tool,
   // and all pieces together are no more than the whole.
   void sums() const {
-    const double farthest = kFarthestPart * model_.reach,
-                 of_sphere = (1 + kReachTolerance) * model_.reach;
+    const double farthest = kFarthestPart * model_.radius,
+                 of_sphere = (1 + kReachTolerance) * model_.radius;
     double balls = 0, cell_sum = 0, weights = 0;
     for (std::size_t i = 0; i < level_.sphere_count; ++i) {
       const Sphere& sphere = model_.spheres[i];
       if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= of_sphere) ||
-          !(level_.cell_reach[i] <= 2 * farthest))
+          !(level_.cell_radius[i] <= 2 * farthest))
         fail("sphere " + std::to_string(i) + " or its cell lies beyond the tool radius");
       balls += volume(sphere);
       cell_sum += level_.cell_volume[i];
@@ -221,7 +221,7 @@ class LevelCheck {
   // sums places.
   void check_cell(std::uint32_t i) const {
     const Vec3 center = model_.spheres[i].center - model_.center_of_mass;
-    const double farthest = kFarthestOfCell * level_.cell_reach[i];
+    const double farthest = kFarthestOfCell * level_.cell_radius[i];
     const auto check = [&](Vec3 at, double radius) {
       if (!(norm(at - center) + radius <= farthest))
         fail("the cell of sphere " + std::to_string(i) + " reaches further than it says");
@@ -256,9 +256,9 @@ void check_calibration(const ToolModel& model, const std::string& name) {
 
 void validate(const ToolModel& model, const std::string& name) {
   if (!(model.volume > 0) || !std::isnormal(model.volume) || !is_finite(model.center_of_mass) ||
-      !std::isfinite(model.reach))
+      !std::isfinite(model.radius))
     refuse("volume, centre of mass and tool radius must be finite, and the volume positive", name);
-  if (!(model.reach >= kSmallestLength && model.reach <= kLargestLength) ||
+  if (!(model.radius >= kSmallestLength && model.radius <= kLargestLength) ||
       !is_in_range(model.center_of_mass))
     refuse(
         "the tool is smaller than 2^-100 m, larger than 2^100 m or further than that from its "

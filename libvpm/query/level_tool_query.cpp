@@ -123,7 +123,7 @@ std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOpti
     return coarsest_level_within(tool, *request_.max_error);
   }
   if (request_.for_scene) {
-    scale_ = scene_scale(scene, tool.reach, pose * tool.center_of_mass);
+    scale_ = scene_scale(scene, tool.radius, pose * tool.center_of_mass);
     return level_for_scene(tool, *scale_);
   }
   return tool.levels.size() - 1;

@@ -36,11 +36,11 @@ struct Patch {
 
 class PatchReader {
  public:
-  PatchReader(const AnyBody& cloud, std::vector<std::uint32_t> near, double reach)
+  PatchReader(const AnyBody& cloud, std::vector<std::uint32_t> near, double tool_radius)
       : positions_(cloud.positions()),
         normals_(cloud.normals()),
         near_(std::move(near)),
-        radius_(kPatchRadius * reach) {}
+        radius_(kPatchRadius * tool_radius) {}
 
   std::size_t patches() const { return std::min(kPatches, near_.size()); }
 
@@ -108,7 +108,7 @@ double SceneScale::largest_radius() const {
   return std::max(smallest_radius(), std::sqrt(2 * smallest_radius() / curvature));
 }
 
-SceneScale scene_scale(const AnyBody& cloud, double reach, std::optional<Vec3> place) {
+SceneScale scene_scale(const AnyBody& cloud, double tool_radius, std::optional<Vec3> place) {
   const std::size_t points = cloud.positions().size();
   if (points < kFewestPoints) {
     refuse("the cloud has " + std::to_string(points) + " points", {},
@@ -116,13 +116,14 @@ SceneScale scene_scale(const AnyBody& cloud, double reach, std::optional<Vec3> p
   }
   std::vector<std::uint32_t> near;
   if (place)
-    near = cloud.visit(
-        [&](const auto& body) { return points_near(body.prepared(), *place, kNear * reach); });
+    near = cloud.visit([&](const auto& body) {
+      return points_near(body.prepared(), *place, kNear * tool_radius);
+    });
   if (near.size() < kFewestPoints) {
     near.resize(points);
     for (std::size_t i = 0; i < points; ++i) near[i] = static_cast<std::uint32_t>(i);
   }
-  const PatchReader reader(cloud, std::move(near), reach);
+  const PatchReader reader(cloud, std::move(near), tool_radius);
   std::vector<Patch> patches(reader.patches());
   parallel_for(patches.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) patches[k] = reader.read(k);
@@ -137,10 +138,11 @@ SceneScale scene_scale(const AnyBody& cloud, double reach, std::optional<Vec3> p
   return {quantile(spacing, 0.5), quantile(noise, 0.5), quantile(curvature, kMostCurved)};
 }
 
-SceneScale scene_scale(std::span<const AnyBody> scene, double reach, std::optional<Vec3> place) {
-  SceneScale finest = scene_scale(scene.front(), reach, place);
+SceneScale scene_scale(std::span<const AnyBody> scene, double tool_radius,
+                       std::optional<Vec3> place) {
+  SceneScale finest = scene_scale(scene.front(), tool_radius, place);
   for (const AnyBody& body : scene.subspan(1)) {
-    const SceneScale scale = scene_scale(body, reach, place);
+    const SceneScale scale = scene_scale(body, tool_radius, place);
     if (scale.smallest_radius() < finest.smallest_radius()) finest = scale;
   }
   return finest;

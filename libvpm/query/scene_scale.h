@@ -16,9 +16,10 @@ namespace vpm {
 // any thread count and order of points. Throws Error(refused) for fewer than kFewestPoints points.
 inline constexpr double kNear = 1.5;
 inline constexpr std::size_t kFewestPoints = 32;
-SceneScale scene_scale(const AnyBody& body, double reach, std::optional<Vec3> place);
+SceneScale scene_scale(const AnyBody& body, double tool_radius, std::optional<Vec3> place);
 // Returns that of the body of a scene whose points resolve the smallest spheres.
-SceneScale scene_scale(std::span<const AnyBody> scene, double reach, std::optional<Vec3> place);
+SceneScale scene_scale(std::span<const AnyBody> scene, double tool_radius,
+                       std::optional<Vec3> place);
 
 // Returns the index of the finest level without spheres below scale.smallest_radius(), else the
 // coarsest. For a calibrated model, returns the coarsest level whose mean error is within kNoBetter

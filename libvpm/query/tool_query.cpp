@@ -37,13 +37,13 @@ void for_each_job(std::size_t count, const Body& body) {
 
 // True if one launch can answer for both.
 bool go_together(const QueryOptions& a, const QueryOptions& b) {
-  return a.measure == b.measure && a.device == b.device && a.occluded == b.occluded;
+  return a.measure == b.measure && a.device == b.device && a.shadows == b.shadows;
 }
 
 void check_options(const QueryOptions& options, const ToolModel& tool) {
   if (!(options.stiffness > 0 && std::isfinite(options.stiffness)))
     invalid("the stiffness must be a positive number");
-  if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach)))
+  if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.radius)))
     invalid("the stiffness is so large that forces overflow");
   if (options.measure == Measure::paper && options.device.is_cuda())
     invalid("the measure as printed is computed on the CPU only",
@@ -51,7 +51,7 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
-  if (options.occluded == OccludedSpace::solid && options.measure == Measure::paper)
+  if (options.shadows == Shadows::solid && options.measure == Measure::paper)
     invalid("solid shadows are a matter of the refined measure", "leave the other measure out");
 }
 
@@ -75,7 +75,7 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
 // Checks that each body of a scene tells what solid occluded space is.
 void ToolQuery::check(std::span<const AnyBody> scene) const {
   if (scene.empty()) invalid("a scene needs a body");
-  if (options_.occluded != OccludedSpace::solid) return;
+  if (options_.shadows != Shadows::solid) return;
   for (const AnyBody& body : scene)
     if (!body.tells_inside() && body.points() > 0)
       refuse(

@@ -74,7 +74,7 @@ bool MeasuredCheck::is_unmeasured(const ContinuedDepth& continued, const ToolPos
     const double depth = sample.known ? 0 : continued.toward(place);
     if (!sample.known && depth == 0) continue;
     const double distance = sample.known ? sample.distance : depth - place.z;
-    if (distance < -2 * model.reach) continue;
+    if (distance < -2 * model.radius) continue;
     const double part = piece.weight * std::clamp(0.5 - 0.5 * distance / piece.radius, 0.0, 1.0);
     inside += part;
     if (!sample.known) inside_unknown += part;
@@ -86,7 +86,7 @@ MeasuredCheck::Found MeasuredCheck::found() const {
   Found found{poses_.kept().size(), 0};
   if (found.poses == 0) return found;
   double reach = 0;
-  for (const ToolModel* const model : tools_) reach = std::max(reach, model->reach);
+  for (const ToolModel* const model : tools_) reach = std::max(reach, model->radius);
   const ContinuedDepth continued(surface_, 2 * reach);
   found.unmeasured = static_cast<std::size_t>(std::ranges::count_if(
       poses_.kept(), [&](const ToolPose& at) { return is_unmeasured(continued, at); }));

@@ -220,7 +220,7 @@ std::vector<Suspicion> all_suspicions() {
 PoseCheck::PoseCheck(std::span<const ToolModel* const> tools, SceneSource source, SceneOf scene_of)
     : source_(std::move(source)), scene_of_(std::move(scene_of)) {
   for (const ToolModel* const model : tools)
-    tools_.push_back({model->center_of_mass, model->reach});
+    tools_.push_back({model->center_of_mass, model->radius});
 }
 
 void PoseCheck::see(const Pose& pose, std::size_t k, const Result& result, std::size_t scene) {

@@ -67,7 +67,7 @@ std::optional<Remark> improbable_sizes(std::span<const ToolModel* const> tools,
   const double shown = size_of(scene);
   if (!(shown > 0)) return std::nullopt;
   for (const ToolModel* const model : tools) {
-    const double size = 2 * model->reach;
+    const double size = 2 * model->radius;
     const Doubt doubt = doubt_of(size, shown, scene);
     if (doubt == Doubt::none) continue;
     char sizes[96];

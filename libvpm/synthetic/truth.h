@@ -15,7 +15,7 @@ struct Penetration {
   // depth -s.
   Vec3 force;
   Vec3 torque;  // integral of (x - C) x grad s, m^4
-  // Estimated error bound of volume and force, m^3; times bounding_radius(), of the torque.
+  // Estimated error bound of volume and force, m^3; times radius(), of the torque.
   double error = 0;
 };
 
@@ -30,7 +30,7 @@ class TrueSolid {
 
   const Solid& solid() const { return solid_; }
   const MassProperties& mass() const { return mass_; }
-  double bounding_radius() const { return radius_; }
+  double radius() const { return radius_; }
 
   // Returns the integrals, computed over the solid's boundary, since s and so the integrands of
   // force and torque vanish on the obstacle's surface:

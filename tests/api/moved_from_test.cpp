@@ -94,9 +94,9 @@ TEST(MovedFrom, Tool) {
   expect_refused<vpm::Tool>(
       tool(), "Tool",
       {[](auto& t) { t.volume(); }, [](auto& t) { t.center_of_mass(); },
-       [](auto& t) { t.bounding_radius(); }, [](auto& t) { t.gyration(); },
-       [](auto& t) { t.spheres(); }, [](auto& t) { t.levels(); },
-       [](auto& t) { t.write(kNowhere); }, [](auto& t) { vpm::Query query(t); },
+       [](auto& t) { t.radius(); }, [](auto& t) { t.gyration(); }, [](auto& t) { t.spheres(); },
+       [](auto& t) { t.levels(); }, [](auto& t) { t.write(kNowhere); },
+       [](auto& t) { vpm::Query query(t); },
        [](auto& t) {
          vpm::Query(std::vector<vpm::Tool>{tool(), t});
        },

@@ -53,7 +53,7 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
   refuses(
       "accuracy", [](SuiteOptions& o) { o.data = "folder"; }, "--all");
   refuses(
-      "timing", [](SuiteOptions& o) { o.occluded = OccludedSpace::solid; }, "accuracy");
+      "timing", [](SuiteOptions& o) { o.shadows = Shadows::solid; }, "accuracy");
 }
 
 // Refuses before minutes of measuring.

@@ -10,7 +10,7 @@ template <class Body>
 BodySum run(const ToolModel& tool, const Body& body, const Pose& pose) {
   using namespace vpm::cuda;
   constexpr auto kKernel = one_pose<Body, kManyBlocks>;
-  const DeviceLevel level(tool, tool.levels.back(), OccludedSpace::within_reach);
+  const DeviceLevel level(tool, tool.levels.back(), Shadows::near);
   const unsigned blocks = blocks_that_fit(kKernel, kThreads, kManyBlocks);
   const RefinedMemory memory(TeamRoom(level.view()), 1, blocks, kThreads);
   DeviceArray<Totals> totals(1);

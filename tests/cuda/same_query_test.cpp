@@ -236,7 +236,7 @@ TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
     options.device = {Device::Kind::cuda, 0};
     ToolQuery near_on_device(tool, options);
     options.device = {};
-    options.occluded = OccludedSpace::solid;
+    options.shadows = Shadows::solid;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery on_device(tool, options);

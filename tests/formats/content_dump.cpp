@@ -61,7 +61,7 @@ json of(const Level& level) {
         {"spheres", grid.spheres}}},
       {"share_volume", level.cell_volume},
       {"share_centroid", list(level.cell_centroid)},
-      {"share_reach", level.cell_reach},
+      {"share_reach", level.cell_radius},
       {"block_begin", level.block_begin},
       {"blocks", list(level.blocks)},
       {"samples", list(level.samples)}};
@@ -78,7 +78,7 @@ json dump(const Packing& packing) {
 
 json dump(const ToolModel& model) {
   json all{{"volume", model.volume},         {"center_of_mass", of(model.center_of_mass)},
-           {"reach", model.reach},           {"solid_hash", model.solid_hash},
+           {"reach", model.radius},          {"solid_hash", model.solid_hash},
            {"spheres", list(model.spheres)}, {"levels", list(model.levels)},
            {"provenance", model.provenance}};
   if (!model.calibration.empty()) all["calibration"] = list(model.calibration);

@@ -73,7 +73,7 @@ Level octant_level(std::uint32_t count) {
     if (columns) centroid.z = 0;
     level.cell_volume.push_back(0.008 / count);
     level.cell_centroid.push_back(centroid);
-    level.cell_reach.push_back(
+    level.cell_radius.push_back(
         columns ? std::sqrt(2 * kQuarter * kQuarter + 9 * kQuarter * kQuarter) : half_diagonal);
     level.blocks.push_back({narrow(centroid), static_cast<float>(half_diagonal), i, i + 1});
     level.samples.push_back(
@@ -105,7 +105,7 @@ ToolModel cube_model() {
   const Packing packing = cube_packing();
   ToolModel model;
   model.volume = 0.008;
-  model.reach = kHalf * std::sqrt(3.0);
+  model.radius = kHalf * std::sqrt(3.0);
   model.solid_hash = content_hash(packing.solid);
   model.spheres = packing.spheres;
   model.levels = {octant_level(4), octant_level(8)};

@@ -10,7 +10,7 @@
 #include "tools/common/import_arguments.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 #ifdef VPM_FUZZ_SOLID
 #include "tools/common/repair_option.h"
 #endif
@@ -82,15 +82,15 @@ void run_tool(Bytes input) {
   std::string said, foreign;
   {
     const Diverted errors(std::cerr), output(std::cout);
-    tools::Tool tool("vpm-fuzz", "Reads a configuration");
+    tools::Program program("vpm-fuzz", "Reads a configuration");
     Options options;
-    options.declare(tool.app());
+    options.declare(program.app());
     std::string config = "--config=" + path_of(input), name = "vpm-fuzz";
     char* arguments[] = {name.data(), config.data(), nullptr};
-    code = tool.run(2, arguments, [&] {
+    code = program.run(2, arguments, [&] {
       try {
-        tools::import_options(tool, options.import);
-        tool.parameters();
+        tools::import_options(program, options.import);
+        program.parameters();
       } catch (const Error&) {
         throw;
       } catch (const std::exception& fault) {

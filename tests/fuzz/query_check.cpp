@@ -27,7 +27,7 @@ void expect_sound(const Result& result) {
 QueryOptions options_of(std::size_t way, bool tells_inside) {
   QueryOptions options;
   options.measure = way == 1 ? Measure::paper : Measure::refined;
-  if (way == 2 && tells_inside) options.occluded = OccludedSpace::solid;
+  if (way == 2 && tells_inside) options.shadows = Shadows::solid;
   options.coherent = way == 3;
   return options;
 }

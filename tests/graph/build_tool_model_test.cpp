@@ -32,7 +32,7 @@ ToolModel scaled(ToolModel m, double by) {
   const float narrow_by = static_cast<float>(by);
   m.volume *= cubed;
   m.center_of_mass = by * m.center_of_mass;
-  m.reach *= by;
+  m.radius *= by;
   for (Sphere& s : m.spheres) s = {by * s.center, by * s.radius};
   for (Level& level : m.levels) {
     level.epsilon *= by;
@@ -42,7 +42,7 @@ ToolModel scaled(ToolModel m, double by) {
     level.grid.cell *= by;
     for (double& v : level.cell_volume) v *= cubed;
     for (Vec3& g : level.cell_centroid) g = by * g;
-    for (double& r : level.cell_reach) r *= by;
+    for (double& r : level.cell_radius) r *= by;
     for (CellBlock& b : level.blocks) {
       b.center = narrow(by * widen(b.center));
       b.radius *= narrow_by;

@@ -51,7 +51,7 @@ TEST(Calibration, HoldsForOtherCuts) {
     constexpr int kCuts = 300;
     for (int cut = 0; cut < kCuts; ++cut) {
       const Vec3 normal = numbers.direction();
-      const double offset = numbers.uniform(-0.9, 0.9) * made.model.reach;
+      const double offset = numbers.uniform(-0.9, 0.9) * made.model.radius;
       double sum = 0;
       for (const CellSample& s : made.model.levels[k].samples) {
         sum += s.weight *

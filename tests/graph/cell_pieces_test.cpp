@@ -45,16 +45,16 @@ TEST_P(Cells, CutByPlanesAndBallsAsTheSolid) {
   Error plane, ball;
   for (int k = 0; k < 200; ++k) {
     const Vec3 normal = numbers.direction();
-    const double offset = numbers.uniform(-0.8, 0.8) * model.reach;
+    const double offset = numbers.uniform(-0.8, 0.8) * model.radius;
     const double truth =
         test::volume_below(packing.solid, normal, offset + dot(normal, model.center_of_mass)) /
         model.volume;
     plane.add(fraction_inside(level, [&](Vec3 x) { return dot(normal, x) - offset; }) - truth);
   }
   const synthetic::TrueSolid solid(packing.solid);
-  const double radius = 3 * model.reach;
+  const double radius = 3 * model.radius;
   for (int k = 0; k < 10; ++k) {
-    const Vec3 center = (radius + numbers.uniform(-0.6, 0.6) * model.reach) * numbers.direction();
+    const Vec3 center = (radius + numbers.uniform(-0.6, 0.6) * model.radius) * numbers.direction();
     const auto truth =
         solid.penetration({}, *synthetic::make_ball(center + model.center_of_mass, radius), 1e-5);
     ball.add(fraction_inside(level, [&](Vec3 x) { return norm(x - center) - radius; }) -
@@ -80,7 +80,7 @@ TEST_P(Cells, SmoothFacesByLittle) {
   for (const Vec3& v : packing.solid.vertices) face = std::max(face, dot(normal, v));
   Error error;
   for (int k = 0; k < 100; ++k) {
-    const double offset = face - dot(normal, model.center_of_mass) - 0.002 * k * model.reach;
+    const double offset = face - dot(normal, model.center_of_mass) - 0.002 * k * model.radius;
     const double truth =
         test::volume_below(packing.solid, normal, offset + dot(normal, model.center_of_mass)) /
         model.volume;
@@ -111,7 +111,7 @@ TEST_P(Cells, HoldTheVolumeOfTheirCell) {
     }
     EXPECT_NEAR(weight * model.volume / level.cell_volume[i], 1, 1e-11);
     const Vec3 centroid = moment / weight + model.center_of_mass;
-    EXPECT_LT(norm(centroid - level.cell_centroid[i]), 1e-6 * model.reach);
+    EXPECT_LT(norm(centroid - level.cell_centroid[i]), 1e-6 * model.radius);
     sum += weight;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
@@ -152,12 +152,12 @@ TEST_P(Cells, BlocksEncloseTheirCell) {
   int inside = 0, found = 0;
   for (int k = 0; k < 20000; ++k) {
     const Vec3 x =
-        model.reach * Vec3{numbers.uniform(-1, 1), numbers.uniform(-1, 1), numbers.uniform(-1, 1)};
+        model.radius * Vec3{numbers.uniform(-1, 1), numbers.uniform(-1, 1), numbers.uniform(-1, 1)};
     if (!(shape.depth(x + model.center_of_mass) > 0)) continue;
     ++inside;
     const std::uint32_t i = bvh.nearest_surface(x + model.center_of_mass, 0);
     EXPECT_LE(norm(x + model.center_of_mass - packing.spheres[i].center),
-              level.cell_reach[i] + 0.01 * model.reach);
+              level.cell_radius[i] + 0.01 * model.radius);
     bool enclosed = false;
     for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
       enclosed |= norm(x - widen(level.blocks[b].center)) <= double{level.blocks[b].radius};

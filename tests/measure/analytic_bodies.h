@@ -29,8 +29,8 @@ struct HalfSpace {
     return on_surface.normal;
   }
   VPM_HD bool may_be_flat(const BallClass&) const { return true; }
-  template <class ReadAll>
-  VPM_HD bool mean_plane(const BallClass&, Vec3, double, double, const ReadAll&,
+  template <class SampleAll>
+  VPM_HD bool mean_plane(const BallClass&, Vec3, double, double, const SampleAll&,
                          TangentPlane& plane) const {
     plane = top;
     return true;
@@ -91,8 +91,8 @@ struct Step {
     return on_surface.normal;
   }
   VPM_HD bool may_be_flat(const BallClass&) const { return true; }
-  template <class ReadAll>
-  VPM_HD bool mean_plane(const BallClass&, Vec3 center, double, double, const ReadAll&,
+  template <class SampleAll>
+  VPM_HD bool mean_plane(const BallClass&, Vec3 center, double, double, const SampleAll&,
                          TangentPlane& plane) const {
     plane = {top.normal, center - top.distance(center) * top.normal};
     return true;
@@ -164,9 +164,9 @@ struct Both {
     return in_ball.one.side == Side::ambiguous ? one.may_be_flat(in_ball.one)
                                                : other.may_be_flat(in_ball.other);
   }
-  template <class ReadAll>
+  template <class SampleAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
-                         const ReadAll& sample_all, TangentPlane& plane) const {
+                         const SampleAll& sample_all, TangentPlane& plane) const {
     return in_ball.one.side == Side::ambiguous
                ? one.mean_plane(in_ball.one, center, radius, tolerance, sample_all, plane)
                : other.mean_plane(in_ball.other, center, radius, tolerance, sample_all, plane);

@@ -49,7 +49,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
     EXPECT_NEAR(r.wrench.force.z, -r.volume, 1e-6 * r.volume);
     EXPECT_LE(seen_alone.volume, r.volume);
     near += seen_alone.volume > 0;
-    if (z < 1 + 2 * tool.reach) continue;
+    if (z < 1 + 2 * tool.radius) continue;
     ++far;
     EXPECT_EQ(seen_alone.volume, 0) << z;
   }

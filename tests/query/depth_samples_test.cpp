@@ -191,9 +191,9 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
     // Takes the cells of two blocks.
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
-          surface_, to_surface, ToolReach{tool.reach, OccludedSpace::within_reach},
+          surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
-                   level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_reach[i]});
+                   level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_radius[i]});
       expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto in_block = measure.classify_block(block);
@@ -228,9 +228,9 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
                           {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
     for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
       const CellMeasure measure(
-          surface_, to_surface, ToolReach{tool.reach, OccludedSpace::within_reach},
+          surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
-                   level.block_begin[i + 1], tool.spheres[i].center, level.cell_reach[i]});
+                   level.block_begin[i + 1], tool.spheres[i].center, level.cell_radius[i]});
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;

@@ -296,7 +296,7 @@ TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
         const double volume = result.volume / cube.volume;
         EXPECT_LT(angle(force, truth.force), 1.2 * kDegree) << is_roof << ' ' << x << ' ' << z;
         EXPECT_NEAR(norm(force), norm(truth.force), 0.03 * volume);
-        EXPECT_NEAR(norm(torque - truth.torque), 0, 0.01 * volume * cube.reach) << is_roof;
+        EXPECT_NEAR(norm(torque - truth.torque), 0, 0.01 * volume * cube.radius) << is_roof;
       }
     }
   }

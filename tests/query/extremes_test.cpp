@@ -197,10 +197,10 @@ TEST(ExtremeTools, SumsBeyondTheirLimitAreRefused) {
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].center.x = 10; }), "sample 5");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].radius = 10; }), "sample 5");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.blocks[2].center.y = -9; }), "block 2");
-  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_reach[7] = 0; }), "no radius");
-  expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 0; }), "2^-100 m");
-  expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 1e-3; }), "beyond the tool radius");
-  expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 1e31; }), "2^100 m");
+  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_radius[7] = 0; }), "no radius");
+  expect_refused(spoiled([](ToolModel& t, Level&) { t.radius = 0; }), "2^-100 m");
+  expect_refused(spoiled([](ToolModel& t, Level&) { t.radius = 1e-3; }), "beyond the tool radius");
+  expect_refused(spoiled([](ToolModel& t, Level&) { t.radius = 1e31; }), "2^100 m");
   expect_refused(spoiled([](ToolModel& t, Level&) { t.volume = 1e-310; }), "volume");
 }
 

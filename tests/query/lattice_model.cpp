@@ -47,7 +47,7 @@ void wrap(std::uint32_t count, double reach, Hierarchy& hierarchy) {
 ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
   ToolModel model;
   model.volume = edge * edge * edge;
-  model.reach = std::sqrt(3.0) * edge / 2;
+  model.radius = std::sqrt(3.0) * edge / 2;
   model.levels.resize(1);
   Level& level = model.levels[0];
   level.sphere_count = n * n * n;
@@ -64,7 +64,7 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
     level.grid.spheres.push_back(i);
     level.cell_volume.push_back(share * share * share);
     level.cell_centroid.push_back(center);
-    level.cell_reach.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
+    level.cell_radius.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
     const std::uint32_t begin = static_cast<std::uint32_t>(level.samples.size());
     for (std::uint32_t s = 0; s < m * m * m; ++s) {
       const std::uint32_t part_row = s / m % m, part_layer = s / (m * m);
@@ -75,13 +75,13 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
       level.samples.push_back(
           {narrow(sample), static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)), weight});
     }
-    level.blocks.push_back({narrow(center), static_cast<float>(level.cell_reach.back()), begin,
+    level.blocks.push_back({narrow(center), static_cast<float>(level.cell_radius.back()), begin,
                             static_cast<std::uint32_t>(level.samples.size())});
     level.block_begin.push_back(static_cast<std::uint32_t>(level.blocks.size()));
   }
   level.grid.begin.push_back(level.sphere_count);
   connect_neighbors(n, level.graph);
-  wrap(level.sphere_count, model.reach, level.hierarchy);
+  wrap(level.sphere_count, model.radius, level.hierarchy);
   return model;
 }
 

@@ -82,7 +82,7 @@ TEST(PaperMeasure, TorqueDoesTheWorkOfTurning) {
   // turning against it pushes it in.
   ToolModel tool = lattice_cube(2, 1, 1);
   tool.center_of_mass = {-1.5, 0.7, 0.2};
-  tool.reach = 3;
+  tool.radius = 3;
   std::vector<Vec3f> floor;
   for (int x = -100; x <= 100; ++x) {
     for (int y = -100; y <= 100; ++y) floor.push_back({0.01f * float(x), 0.01f * float(y), -0.3f});

@@ -58,7 +58,7 @@ TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
           dot(r.wrench.force, truth.force) / (norm(r.wrench.force) * norm(truth.force));
       EXPECT_LE(std::acos(std::min(1.0, cosine)) * 180 / kPi, kDegrees) << "pose " << k;
       EXPECT_LE(norm(r.wrench.torque - truth.torque),
-                0.01 * truth.volume * tool.reach + 1e-4 * tool.volume * tool.reach)
+                0.01 * truth.volume * tool.radius + 1e-4 * tool.volume * tool.radius)
           << "pose " << k;
     }
     if (truth.volume == 0) {
@@ -106,7 +106,7 @@ TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
     const int column = k % 10, row = k / 10;
     const Pose pose{generic_rotation(), {0.01 * column, 0.01, 0.96 + 0.01 * row}};
     const auto is_deep = [&](const CellSample& sample) {
-      return scene.surface->distance(pose * widen(sample.center)) < -tool.reach;
+      return scene.surface->distance(pose * widen(sample.center)) < -tool.radius;
     };
     const std::vector<CellSample>& samples = tool.levels[0].samples;
     if (std::any_of(samples.begin(), samples.end(), is_deep)) continue;
@@ -163,7 +163,7 @@ TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
   for (const double z : {0.98, 1.0, 1.18, 1.23}) {
     ToolQuery query(tool, {});
     double before = 0, expected_before = 0, most = 0;
-    const double near = z > 1 + tool.reach ? tool.reach : 2 * tool.reach;
+    const double near = z > 1 + tool.radius ? tool.radius : 2 * tool.radius;
     for (double x = 0.3; x > 0; x -= 0.002) {
       const Pose pose{generic_rotation(), {x, 0.01, z}};
       const Result r = query.run(cloud, pose);
@@ -327,7 +327,7 @@ TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
       const double slope = (moved(kMove) - moved(-kMove)) / (2 * kMove);
       EXPECT_NEAR(-dot(r.wrench.force, axis), slope, 0.01 * r.volume) << name;
       const double twist = (turned(kTurn) - turned(-kTurn)) / (2 * kTurn);
-      EXPECT_NEAR(-dot(r.wrench.torque, axis), twist, 0.01 * r.volume * tool.reach) << name;
+      EXPECT_NEAR(-dot(r.wrench.torque, axis), twist, 0.01 * r.volume * tool.radius) << name;
     }
   }
 }

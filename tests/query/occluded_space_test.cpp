@@ -20,7 +20,7 @@ constexpr double kEdge = 0.2;
 
 QueryOptions solid() {
   QueryOptions options;
-  options.occluded = OccludedSpace::solid;
+  options.shadows = Shadows::solid;
   return options;
 }
 

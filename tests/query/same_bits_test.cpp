@@ -168,14 +168,14 @@ ToolModel scaled(ToolModel tool, double s) {
   const auto stretch = [f](Vec3f& x) { x = {f * x.x, f * x.y, f * x.z}; };
   tool.volume *= s * s * s;
   tool.center_of_mass = s * tool.center_of_mass;
-  tool.reach *= s;
+  tool.radius *= s;
   for (Sphere& sphere : tool.spheres) sphere = {s * sphere.center, s * sphere.radius};
   for (Level& level : tool.levels) {
     for (HierarchyNode& node : level.hierarchy.nodes)
       node.bound = {s * node.bound.center, s * node.bound.radius};
     level.grid.low = s * level.grid.low;
     level.grid.cell *= s;
-    for (double& reach : level.cell_reach) reach *= s;
+    for (double& reach : level.cell_radius) reach *= s;
     for (CellBlock& block : level.blocks) stretch(block.center), block.radius *= f;
     for (CellSample& sample : level.samples) stretch(sample.center), sample.radius *= f;
   }

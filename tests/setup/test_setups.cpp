@@ -14,7 +14,7 @@ ToolModel cube_of(double across, Vec3 center, double scale) {
   ToolModel model;
   model.volume = side * side * side;
   model.center_of_mass = center;
-  model.reach = across / 2;
+  model.radius = across / 2;
   model.spheres = {{center, side / 2}};
   Level level;
   level.sphere_count = 1;

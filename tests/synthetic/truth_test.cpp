@@ -52,7 +52,7 @@ TEST_P(TruthTest, AgreesWithCountedVoxels) {
     const Penetration truth = solid.penetration(pose, *surface);
     EXPECT_LE(truth.error, kTolerance * solid.mass().volume);
     expect_near(truth, count_voxels(size, pose, *surface, 120), 1e-3 * solid.mass().volume,
-                solid.bounding_radius());
+                solid.radius());
   }
 }
 
@@ -67,7 +67,7 @@ TEST_P(TruthTest, KeepsItsErrorBound) {
       const Penetration fine = solid.penetration(pose, *surface, 1e-8);
       EXPECT_LE(truth.error, kTolerance * solid.mass().volume);
       expect_near(truth, fine, truth.error + fine.error + 1e-12 * solid.mass().volume,
-                  2 * solid.bounding_radius());
+                  2 * solid.radius());
     }
   }
 }
@@ -107,7 +107,7 @@ TEST(Truth, DeepInsideIsTheWholeSolid) {
   const TrueSolid torus(make_twisted_torus(0.06, 0.03, 2, 48));
   const Penetration truth = torus.penetration({kTurned, {0, 0, 1.3}}, *make_scene("wall").surface);
   const double volume = torus.mass().volume;
-  expect_near(truth, {volume, {0, 0, -volume}, {}, 0}, 1e-6 * volume, torus.bounding_radius());
+  expect_near(truth, {volume, {0, 0, -volume}, {}, 0}, 1e-6 * volume, torus.radius());
 }
 
 TEST(Truth, ClearOfTheSurfaceIsZero) {
@@ -147,7 +147,7 @@ TEST(Truth, ForceAndTorqueAreTheSlopeOfTheEnergy) {
   moved = {turn * pose.rotation, pose.translation};
   back = {transpose(turn) * pose.rotation, pose.translation};
   const double torque = -(energy(moved) - energy(back)) / (2 * kTurn);
-  EXPECT_NEAR(torque, truth.torque.x, 1e-3 * solid.mass().volume * solid.bounding_radius());
+  EXPECT_NEAR(torque, truth.torque.x, 1e-3 * solid.mass().volume * solid.radius());
 }
 
 TEST(Truth, IsTheSameForAnyThreadCount) {

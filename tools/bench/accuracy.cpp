@@ -40,7 +40,7 @@ class Accuracy {
   explicit Accuracy(const SuiteOptions& options)
       : options_(options),
         sweeps_([&](const std::string& shape) -> const PackedSolid& { return tool(shape); },
-                options.noise_seed, options.occluded, options.device, report_) {
+                options.noise_seed, options.shadows, options.device, report_) {
     report_.suite = "accuracy";
     report_.settings = {{"quick", options.quick},
                         {"all", options.all},
@@ -86,7 +86,7 @@ class Accuracy {
   }
 
  private:
-  bool is_solid() const { return options_.occluded == OccludedSpace::solid; }
+  bool is_solid() const { return options_.shadows == Shadows::solid; }
 
   const PackedSolid& tool(const std::string& shape) {
     const auto found = tools_.find(shape);
@@ -119,7 +119,7 @@ class Accuracy {
         synthetic::Scene scene = synthetic::make_scene(name);
         scene.camera = camera_of_spacing(spacing * smallest);
         const RandomPoses found = run_random_poses(scene, tools, kFew, kRandomPoses, kNoiseSeed,
-                                                   options_.occluded, options_.device);
+                                                   options_.shadows, options_.device);
         leaks += found.leaks[0];
         report_.results.push_back({{"group", "random poses"},
                                    {"scene", name},

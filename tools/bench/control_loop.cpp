@@ -60,7 +60,7 @@ struct Path {
 // Returns the height at which this fraction of the tool is inside, by bisection.
 double height_for(ToolQuery& query, const AnyBody& cloud, const ToolModel& tool, const Path& path,
                   double fraction) {
-  double low = -tool.reach, high = tool.reach;
+  double low = -tool.radius, high = tool.radius;
   for (int step = 0; step < 24; ++step) {
     const double middle = 0.5 * (low + high);
     const Pose pose = path.at(tool, middle, 0, {});
@@ -87,7 +87,7 @@ Path make_path(ToolQuery& query, const AnyBody& cloud, const ToolModel& tool) {
   path.normal = normalized_or_zero(widen(cloud.normals()[middle]));
   path.side = normalized_or_zero(
       cross(path.normal, std::abs(path.normal.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-  path.swing = 0.2 * tool.reach;
+  path.swing = 0.2 * tool.radius;
   path.shallow = height_for(query, cloud, tool, path, 0.05);
   path.deep = height_for(query, cloud, tool, path, 0.10);
   return path;

@@ -30,7 +30,7 @@ Errors compare(const std::vector<Result>& measured,
         unseen[k].free + unseen[k].inside <= kDepthKnown * true_volume) {
       const Vec3 force = measured[k].wrench.force, torque = measured[k].wrench.torque;
       errors.force.add(norm(force - truth[k].force) / whole);
-      errors.torque.add(norm(torque - truth[k].torque) / (whole * tool.bounding_radius()));
+      errors.torque.add(norm(torque - truth[k].torque) / (whole * tool.radius()));
       if (norm(truth[k].force) > kForceMatters * whole)
         errors.direction.add(angle_degrees(force, truth[k].force));
     }

@@ -114,7 +114,7 @@ void add_refused_models(std::vector<ExtremeCase>& cases) {
   add("shares that sum to less than the tool",
       [](ToolModel& t) { t.levels[0].cell_volume[0] *= 0.9; });
   add("a sample beyond the tool", [](ToolModel& t) { t.levels[0].samples[0].center.x = 100; });
-  add("a tool without reach", [](ToolModel& t) { t.reach = 0; });
+  add("a tool without reach", [](ToolModel& t) { t.radius = 0; });
   add("more samples in a share than are counted exactly", [](ToolModel& t) {
     constexpr std::uint32_t kMore = 1u << 20;
     Level& level = t.levels[0];

@@ -4,13 +4,13 @@
 #include "libvpm/core/error.h"
 #include "tools/bench/suite.h"
 #include "tools/common/number_checks.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::bench {
 namespace {
 
 struct Arguments {
-  std::string suite, folder = "bench-output", meshes, data, occluded = "near";
+  std::string suite, folder = "bench-output", meshes, data, shadows = "near";
   bool quick = false, all = false;
   std::uint64_t noise_seed = SuiteOptions::kUsualNoise;
 };
@@ -33,7 +33,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")
       ->check(tools::whole_number_in(0, 1 << 30))
       ->capture_default_str();
-  app.add_option("--shadows", a.occluded,
+  app.add_option("--shadows", a.shadows,
                  "accuracy: what counts of the places that a depth image does not show: near ones, "
                  "or all (solid)")
       ->check(CLI::IsMember({"near", "solid"}))
@@ -49,36 +49,35 @@ std::string command_of(const Arguments& a, const std::string& device, int thread
   const bool usual_noise = a.noise_seed == SuiteOptions::kUsualNoise;
   return "vpm-bench " + a.suite + (a.quick ? " --quick" : "") + (a.all ? " --all" : "") +
          (usual_noise ? "" : " --noise-seed " + std::to_string(a.noise_seed)) +
-         (a.occluded == "near" ? "" : " --shadows " + a.occluded) +
+         (a.shadows == "near" ? "" : " --shadows " + a.shadows) +
          (device == "auto" ? "" : " --device " + device) +
          (threads == 0 ? "" : " --threads " + std::to_string(threads)) +
          (a.meshes.empty() ? "" : " --meshes MESHES") + (a.data.empty() ? "" : " --data DATA");
 }
 
-void run(const tools::Tool& tool, const Arguments& a) {
-  const std::string& device = tool.common().device;
+void run(const tools::Program& program, const Arguments& a) {
+  const std::string& device = program.common().device;
   const bool asks_device = device != "auto" || needs_device(a.suite);
   if (is_suite(a.suite)) {
     make_folder(a.folder);
     tools::check_files({},
                        {{"--out", a.folder + "/" + a.suite + ".json", {}},
                         {"--out", a.folder + "/" + a.suite + ".csv", {}}},
-                       tool.common());
+                       program.common());
   }
-  tools::Progress progress("vpm-bench " + a.suite, tool.common());
-  const Report report = run_suite(
-      a.suite,
-      {.quick = a.quick,
-       .all = a.all,
-       .progress = [&](double fraction) { progress.update(fraction); },
-       .meshes = a.meshes,
-       .data = a.data,
-       .noise_seed = a.noise_seed,
-       .occluded = a.occluded == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach,
-       .device = asks_device ? tool.device() : Device{},
-       .threads = tool.common().threads});
-  write(report, command_of(a, device, tool.common().threads), a.folder);
-  if (!tool.common().quiet) std::cout << report.summary << std::flush;
+  tools::Progress progress("vpm-bench " + a.suite, program.common());
+  const Report report =
+      run_suite(a.suite, {.quick = a.quick,
+                          .all = a.all,
+                          .progress = [&](double fraction) { progress.update(fraction); },
+                          .meshes = a.meshes,
+                          .data = a.data,
+                          .noise_seed = a.noise_seed,
+                          .shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near,
+                          .device = asks_device ? program.device() : Device{},
+                          .threads = program.common().threads});
+  write(report, command_of(a, device, program.common().threads), a.folder);
+  if (!program.common().quiet) std::cout << report.summary << std::flush;
   if (!report.failure.empty())
     refuse(report.failure + "; " + a.folder + "/" + a.suite + ".json names them");
 }
@@ -87,9 +86,9 @@ void run(const tools::Tool& tool, const Arguments& a) {
 }  // namespace vpm::bench
 
 int main(int argc, char** argv) {
-  vpm::tools::Tool tool("vpm-bench", "Measure accuracy and speed; write JSON and CSV");
+  vpm::tools::Program program("vpm-bench", "Measure accuracy and speed; write JSON and CSV");
   vpm::bench::Arguments arguments;
-  declare(tool.app(), arguments);
-  tool.computes_on_devices();
-  return tool.run(argc, argv, [&] { run(tool, arguments); });
+  declare(program.app(), arguments);
+  program.computes_on_devices();
+  return program.run(argc, argv, [&] { run(program, arguments); });
 }

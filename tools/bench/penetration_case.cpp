@@ -41,8 +41,7 @@ double z_of_volume(const synthetic::TrueSolid& tool, const Pose& start,
 
 double contact_z(const synthetic::TrueSolid& tool, const Pose& start,
                  const synthetic::Surface& surface) {
-  return z_of_volume(tool, start, surface, 1e-9, 1 - 3 * tool.bounding_radius(),
-                     1 + tool.bounding_radius());
+  return z_of_volume(tool, start, surface, 1e-9, 1 - 3 * tool.radius(), 1 + tool.radius());
 }
 
 std::vector<Pose> between(const Pose& start, double first, double last, int poses) {

@@ -50,8 +50,7 @@ Camera camera_of_spacing(double spacing) {
 
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, OccludedSpace occluded,
-                             const Device& device) {
+                             int poses, std::uint64_t seed, Shadows shadows, const Device& device) {
   const AnyBody cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
   const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
@@ -60,11 +59,11 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const PackedSolid& tool = *tools[t];
     ToolQuery queries[2] = {
-        ToolQuery(tool.model, {.level = level, .device = device, .occluded = occluded}),
+        ToolQuery(tool.model, {.level = level, .device = device, .shadows = shadows}),
         ToolQuery(tool.model, {.measure = Measure::paper, .level = level})};
     const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
     while (found.poses < last) {
-      const Pose pose = random_pose(seed, tried++, tool.model.reach);
+      const Pose pose = random_pose(seed, tried++, tool.model.radius);
       const double truth = counted(tool, pose, *scene.surface);
       if (truth > kFullest) continue;
       ++found.poses;

@@ -28,13 +28,12 @@ struct RandomPoses {
 Camera camera_of_spacing(double spacing);
 
 // Runs `poses` poses with 0 to 60 % of the tool inside, the same for the same seed; tools take
-// turns. The surface is rendered without noise and normals are estimated from the image. `occluded`
+// turns. The surface is rendered without noise and normals are estimated from the image. `shadows`
 // is for the refined measure. The measure as printed runs at every eighth pose only, since it takes
 // most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, OccludedSpace occluded,
-                             const Device& device);
+                             int poses, std::uint64_t seed, Shadows shadows, const Device& device);
 
 // Returns a uniformly distributed rotation; draws four numbers.
 Rotation random_rotation(synthetic::NormalNumbers& numbers);

@@ -39,15 +39,15 @@ std::string path_of(const Frame& frame, const std::string& folder) {
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses, const Device& device) {
   const AnyBody prepared(cloud);
-  ToolQuery solid(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid}),
+  ToolQuery solid(tool.model, {.level = level, .device = device, .shadows = Shadows::solid}),
       near(tool.model, {.level = level, .device = device}),
       paper(tool.model, {.measure = Measure::paper, .level = level});
   FrameResult result;
   result.frame = name;
   const int tries = 20 * poses;
   for (int k = 0; k < tries && result.poses < poses; ++k) {
-    const Pose pose = random_pose_before(cloud, static_cast<std::uint64_t>(k), tool.model.reach);
-    const ProjectiveCount count = count_behind(tool.few_places(), tool.model.reach, pose,
+    const Pose pose = random_pose_before(cloud, static_cast<std::uint64_t>(k), tool.model.radius);
+    const ProjectiveCount count = count_behind(tool.few_places(), tool.model.radius, pose,
                                                cloud.sensor->depth, cloud.sensor->camera);
     if (!(count.behind > 0 && count.behind < kShallow)) continue;
     ++result.poses;

@@ -31,8 +31,8 @@ std::vector<RecordedImage> recorded_images(const std::string& folder);
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach);
 
 // Largest fraction of the tool inside, by the count, of the poses that are compared. The count
-// takes occluded space as solid, as OccludedSpace::solid does. OccludedSpace::within_reach is also
-// compared without occluded places, which lie further behind the surface than the tool's radius and
+// takes occluded space as solid, as Shadows::solid does. Shadows::near is also
+// compared without occluded places, which lie further behind the surface than the tool radius and
 // may count or not.
 inline constexpr double kShallow = 0.1;
 inline constexpr double kFrameBound = 0.05;  // in parts of the tool's volume

@@ -33,7 +33,7 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& options, Report& r
 // Times coherent poses beside the same poses on their own; steps of 0.5 mm, 1 thread.
 void time_coherence(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
-// Times a cloud with twice the points, all added ones beyond the tool's radius; 1 thread.
+// Times a cloud with twice the points, all added ones beyond the tool radius; 1 thread.
 void time_points_outside(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
 // Times the way from the raw depth image to the prepared cloud; 1 and 2 threads.

@@ -34,7 +34,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
 // Returns the pose along the optical axis at which kInside of the tool is inside, by bisection.
 Pose pose_inside(const ToolModel& tool, const AnyBody& cloud) {
   ToolQuery query(tool, {});
-  double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
+  double clear = 1 - 2 * tool.radius, deep = 1 + tool.radius;
   constexpr int kHalvings = 30;
   for (int k = 0; k < kHalvings; ++k) {
     const double z = 0.5 * (clear + deep);
@@ -270,7 +270,7 @@ void time_coherence(const ReplayTool& tool, const SuiteOptions& suite, Report& r
   const int poses = static_cast<int>(2 * kPi * kRadius / kCoherentStep),
             rounds = suite.quick ? 1 : 8;
   const Pose inside = pose_inside(tool.model, cloud);
-  const Pose before{inside.rotation, inside.translation - Vec3{0, 0, 1.5 * tool.model.reach}};
+  const Pose before{inside.rotation, inside.translation - Vec3{0, 0, 1.5 * tool.model.radius}};
   const CoherentPath contact{"in contact", circle(inside, kRadius, poses)},
       free{"free", circle(before, kRadius, poses)};
   const ThreadCap cap(suite, 1);

@@ -73,7 +73,7 @@ TimedPath haptic_path(const AnyBody& cloud, const ToolModel& tool, double second
   std::vector<Pose> poses;
   for (int k = 0; k <= static_cast<int>(seconds * kPosesPerSecond); ++k) {
     const double t = k / kPosesPerSecond, phase = 2 * kPi * t / kPeriod;
-    const double height = tool.reach * (0.6 + 0.4 * std::cos(2 * phase));
+    const double height = tool.radius * (0.6 + 0.4 * std::cos(2 * phase));
     const Vec3 center = place + height * n +
                         kWander * (std::sin(phase) * side + (std::cos(phase) - 1) * cross(n, side));
     const Rotation rotation = rotation_from_vector(phase / 2 * n);

@@ -63,10 +63,10 @@ class Sight {
 Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras);
 
-// Fractions of the places. The count takes occluded space as solid, as OccludedSpace::solid does.
+// Fractions of the places. The count takes occluded space as solid, as Shadows::solid does.
 struct ProjectiveCount {
   double behind = 0;    // behind the depth of the nearest pixel
-  double occluded = 0;  // the part of `behind` that is further behind it than the tool's radius
+  double occluded = 0;  // the part of `behind` that is further behind it than the tool radius
 };
 
 // Counts `places`, which are spread evenly over the tool. A place in front of a pixel without

@@ -84,7 +84,7 @@ void follow_solid(const Path& path, const std::vector<Pose>& along, const AnyBod
                   const PackedSolid& tool, std::uint32_t level, const Device& device,
                   SilhouetteResult& result) {
   const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
-  ToolQuery query(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid});
+  ToolQuery query(tool.model, {.level = level, .device = device, .shadows = Shadows::solid});
   double volume_before = 0, count_before = 0;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const double volume = query.run(cloud, along[k]).volume_fraction;
@@ -92,7 +92,8 @@ void follow_solid(const Path& path, const std::vector<Pose>& along, const AnyBod
         tool.model, query.level(), along[k], path.depth, path.scene.camera, query.states());
     if (!is_whole) continue;
     const double count =
-        count_behind(tool.places, tool.model.reach, along[k], path.depth, path.scene.camera).behind;
+        count_behind(tool.places, tool.model.radius, along[k], path.depth, path.scene.camera)
+            .behind;
     const double beyond = std::abs(volume - volume_before) - std::abs(count - count_before);
     result.solid_worst = std::max(result.solid_worst, std::abs(volume - count));
     if (k > 0) result.solid_jump_worst = std::max(result.solid_jump_worst, beyond);
@@ -147,7 +148,7 @@ int counted_in_free_space(const ToolModel& tool, const Level& level, const Pose&
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
     if (states[i] == SphereState::outside) continue;
     const Vec3 c = to_camera * tool.spheres[i].center;
-    const double reach = level.cell_reach[i], nearest = c.z - reach, farthest = c.z + reach;
+    const double reach = level.cell_radius[i], nearest = c.z - reach, farthest = c.z + reach;
     if (!(nearest > 0)) continue;
     bool free = true;
     const double r = reach * std::max(k.fx, k.fy) / nearest * (1 + norm(c) / nearest) + 1;

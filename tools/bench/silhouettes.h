@@ -13,7 +13,7 @@ namespace vpm::bench {
 struct SilhouetteResult {
   std::string path;
   double volume_worst[2] = {}, jump_worst[2] = {};  // indexed by Measure::refined, Measure::paper
-  // Worst difference of OccludedSpace::solid from the count of places behind the image, and its
+  // Worst difference of Shadows::solid from the count of places behind the image, and its
   // worst step between neighbouring poses beyond the count's step; 0 for images with missing
   // pixels.
   double solid_worst = 0, solid_jump_worst = 0;

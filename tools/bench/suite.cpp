@@ -56,7 +56,7 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
   check(!given.meshes.empty(), kMeshes, "--meshes");
   check(!given.data.empty(), kData, "--data");
   check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
-  check(given.occluded == OccludedSpace::solid, kOccluded, "--shadows");
+  check(given.shadows == Shadows::solid, kOccluded, "--shadows");
 }
 
 }  // namespace

@@ -24,10 +24,9 @@ struct SuiteOptions {
   std::string data = {};
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: seed of the noise
-  OccludedSpace occluded =
-      OccludedSpace::within_reach;  // accuracy; solid leaves out clouds without camera
-  Device device = {};               // computes the queries, in suites that take one
-  int threads = 0;                  // to measure with; 0: what each part usually takes
+  Shadows shadows = Shadows::near;         // accuracy; solid leaves out clouds without camera
+  Device device = {};                      // computes the queries, in suites that take one
+  int threads = 0;                         // to measure with; 0: what each part usually takes
 };
 
 // Returns the names of all suites, "accuracy, extremes, ...", or of those that take a CUDA device.

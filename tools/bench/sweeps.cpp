@@ -43,11 +43,11 @@ std::vector<SweepCase> all_cases() {
   return cases;
 }
 
-Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, OccludedSpace occluded, const Device& device,
+Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, const Device& device,
                Report& report)
     : tool_(std::move(tool)),
       noise_seed_(noise_seed),
-      occluded_(occluded),
+      shadows_(shadows),
       device_(device),
       report_(report) {
   report_.table.columns = {
@@ -97,12 +97,10 @@ void Sweeps::measure(const SweepCase& c, const Path& path, const std::vector<Uns
                      CloudKind kind, Noise noise, Measure measure, std::uint32_t spheres) {
   const PackedSolid& tool = tool_(c.shape);
   const View& seen = view(synthetic::make_scene(c.scene), kind, noise);
-  ToolQuery query(
-      tool.model,
-      {.measure = measure,
-       .level = spheres,
-       .device = device_for(measure, device_),
-       .occluded = measure == Measure::refined ? occluded_ : OccludedSpace::within_reach});
+  ToolQuery query(tool.model, {.measure = measure,
+                               .level = spheres,
+                               .device = device_for(measure, device_),
+                               .shadows = measure == Measure::refined ? shadows_ : Shadows::near});
   std::vector<Result> measured;
   for (const Pose& pose : path.poses) measured.push_back(query.run(seen.cloud, pose));
   const Errors errors = compare(measured, path.truth, unseen, tool.solid);

@@ -41,7 +41,7 @@ struct SweepSettings {
 class Sweeps {
  public:
   using ToolOf = std::function<const PackedSolid&(const std::string& shape)>;
-  Sweeps(ToolOf tool, std::uint64_t noise_seed, OccludedSpace occluded, const Device& device,
+  Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, const Device& device,
          Report& report);
 
   void run(const SweepCase& c, const SweepSettings& settings);
@@ -65,7 +65,7 @@ class Sweeps {
 
   ToolOf tool_;
   std::uint64_t noise_seed_;
-  OccludedSpace occluded_;  // for the refined measure
+  Shadows shadows_;  // for the refined measure
   Device device_;
   Report& report_;
   std::map<std::array<std::string, 3>, View> views_;

@@ -146,7 +146,7 @@ class Timing {
                            {}});
       Recorded& room = recorded_.back();
       for (std::uint64_t k = 0; room.poses.size() < kPosesInRoom && k < kMostTries; ++k) {
-        const Pose pose = random_pose_before(image.cloud, k, tool.reach);
+        const Pose pose = random_pose_before(image.cloud, k, tool.radius);
         const double inside = query.run(room.seen, pose).volume_fraction;
         if (inside > kLeastInside && inside < kMostInside) room.poses.push_back(pose);
       }
@@ -174,9 +174,9 @@ class Timing {
     const AnyBody cloud(cloud_), measured(cloud_, Denoising::off), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
-    // Places most of the tool further behind the surface than the tool's radius.
+    // Places most of the tool further behind the surface than the tool radius.
     const Pose deep{pose.rotation,
-                    pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
+                    pose.translation - model.radius * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const AnyBody& seen, const Pose& at,
                                 Measure measure = Measure::refined) {
       ToolQuery query(model, {.measure = measure});

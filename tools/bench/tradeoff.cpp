@@ -290,7 +290,7 @@ class Tradeoff {
               m.scene == c.scene && m.noise == f.noise)
             f.fixed.push_back({m.spheres, m.median_us, m.errors.volume.mean()});
         }
-        f.scale = scene_scale(seen, t.model.reach, deepest * t.model.center_of_mass);
+        f.scale = scene_scale(seen, t.model.radius, deepest * t.model.center_of_mass);
         f.level = t.model.levels[level_for_scene(t.model, f.scale)].sphere_count;
         QueryOptions query_options;
         query_options.level = f.level;

@@ -144,7 +144,7 @@ DepthReading depth_reading(const ImportArguments& a) {
   return reading;
 }
 
-void read_intrinsics(const Tool& tool, const ImportArguments& a, const std::string& image,
+void read_intrinsics(const Program& program, const ImportArguments& a, const std::string& image,
                      ImportOptions& options) {
   if (a.intrinsics.empty()) return;
   const std::vector<double> n = numbers_in(a.intrinsics);
@@ -155,8 +155,8 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, const std::stri
     options.intrinsics = {n[0], n[1], n[2], n[3]};
   } else {
     const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics, image);
-    say(tool, a.intrinsics, read.remarks);
-    say(tool, a.intrinsics, unused_factor(read.factor, options.depth.units_per_metre));
+    say(program, a.intrinsics, read.remarks);
+    say(program, a.intrinsics, unused_factor(read.factor, options.depth.units_per_metre));
     options.intrinsics = read.intrinsics;
     options.calibrated_width = read.width;
     options.calibrated_height = read.height;
@@ -165,7 +165,7 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, const std::stri
   check_intrinsics(*options.intrinsics);
 }
 
-void read_pose(const Tool& tool, const ImportArguments& a, ImportOptions& options) {
+void read_pose(const Program& program, const ImportArguments& a, ImportOptions& options) {
   options.axes = axes_named(a.axes).value_or(CameraAxes::opencv);
   if (a.camera_pose.empty()) return;
   double deviation = 0;
@@ -174,7 +174,7 @@ void read_pose(const Tool& tool, const ImportArguments& a, ImportOptions& option
           ? naming("--camera-pose", [&] { return pose_from_text(a.camera_pose, &deviation); })
           : read_camera_pose(a.camera_pose, &deviation);
   if (deviation > kRotationRounding)
-    tool.note("--camera-pose: its rotation is not exact and has been normalised");
+    program.note("--camera-pose: its rotation is not exact and has been normalised");
 }
 
 }  // namespace
@@ -185,21 +185,23 @@ void declare(CLI::App& app, ImportArguments& a) {
   declare_normals(app, a);
 }
 
-ImportOptions import_options(const Tool& tool, const ImportArguments& a, const std::string& image) {
+ImportOptions import_options(const Program& program, const ImportArguments& a,
+                             const std::string& image) {
   ImportOptions options;
   options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
   check_normal_options(options.normals);
   options.depth = depth_reading(a);
   options.channel = a.channel;
   options.flip = a.flip;
-  read_intrinsics(tool, a, image, options);
-  read_pose(tool, a, options);
+  read_intrinsics(program, a, image, options);
+  read_pose(program, a, options);
   return options;
 }
 
-void say(const Tool& tool, const std::string& name, const Remarks& remarks) {
+void say(const Program& program, const std::string& name, const Remarks& remarks) {
   for (const Remark& remark : remarks)
-    remark.is_warning ? tool.warn(name + ": " + remark.text) : tool.note(name + ": " + remark.text);
+    remark.is_warning ? program.warn(name + ": " + remark.text)
+                      : program.note(name + ": " + remark.text);
 }
 
 }  // namespace vpm::tools

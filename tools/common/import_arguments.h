@@ -5,7 +5,7 @@
 #include <string>
 
 #include "libvpm/import/import_cloud.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 
@@ -27,10 +27,10 @@ void declare(CLI::App& app, ImportArguments& arguments);
 // depth image, if there is one, tells which of a file's cameras is its. Throws
 // Error(invalid_argument) where one is out of range, and what the files' readers throw; notes what
 // these say, and a quaternion that had to be normalised.
-ImportOptions import_options(const Tool& tool, const ImportArguments& arguments,
+ImportOptions import_options(const Program& program, const ImportArguments& arguments,
                              const std::string& image = {});
 
 // Prints what the readers say about a file.
-void say(const Tool& tool, const std::string& name, const Remarks& remarks);
+void say(const Program& program, const std::string& name, const Remarks& remarks);
 
 }  // namespace vpm::tools

@@ -46,7 +46,7 @@ nlohmann::ordered_json graph_report(const ToolModel& model,
   report["volume"] = model.volume;
   report["center_of_mass"] = {model.center_of_mass.x, model.center_of_mass.y,
                               model.center_of_mass.z};
-  report["reach"] = model.reach;
+  report["reach"] = model.radius;
   report["solid_hash"] = model.solid_hash;
   report["levels"] = std::move(levels);
   report["seconds"] = seconds;

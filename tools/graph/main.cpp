@@ -16,8 +16,8 @@
 #include "libvpm/view/page.h"
 #include "libvpm/view/simplify.h"
 #include "tools/common/number_checks.h"
+#include "tools/common/program.h"
 #include "tools/common/repair_option.h"
-#include "tools/common/tool.h"
 #include "tools/graph/graph_report.h"
 #include "tools/graph/model_view.h"
 
@@ -90,7 +90,7 @@ void check_mesh(const Packing& packing, const Arguments& a) {
   }
 }
 
-void run(const Tool& tool, Arguments& a) {
+void run(const Program& program, Arguments& a) {
   if (a.packing == "-" && a.mesh == "-") {
     throw Error(ErrorKind::invalid_argument,
                 "only one of the packing and --mesh can be standard input");
@@ -99,25 +99,25 @@ void run(const Tool& tool, Arguments& a) {
               {{"--output", a.output, file::Kind::tool_model},
                {"--report", a.report, std::nullopt, OutputForm::json},
                {"--view", a.view, std::nullopt, OutputForm::page}},
-              tool.common());
+              program.common());
   if (!a.view.empty()) view::check_available();
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
   const std::size_t spheres = packing.spheres.size();
   if (std::ranges::any_of(a.options.levels, [&](std::uint32_t n) { return n > spheres; }))
-    tool.note("--levels: the packing has " + std::to_string(spheres) +
-              " spheres; larger levels are left out");
+    program.note("--levels: the packing has " + std::to_string(spheres) +
+                 " spheres; larger levels are left out");
 
-  Progress progress("levels", tool.common());
+  Progress progress("levels", program.common());
   a.options.progress = [&](double fraction) { progress.update(fraction); };
   std::vector<VoronoiQuality> quality;
   const auto start = std::chrono::steady_clock::now();
   ToolModel model = build_tool_model(packing, a.options, &quality);
   if (a.calibrate) model.calibration = calibrate(model, packing.solid);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  model.provenance = {{"tool", tool.name()},
+  model.provenance = {{"tool", program.name()},
                       {"version", VPM_VERSION},
-                      {"parameters", tool.parameters()},
+                      {"parameters", program.parameters()},
                       {"packing", packing.provenance}};
   const Solid mesh = view::simplified(packing.solid, view::kMostTriangles);
   write_tool_model(a.output, model, mesh);
@@ -132,8 +132,8 @@ void run(const Tool& tool, Arguments& a) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-graph", "Make a tool model for penetration queries from a sphere packing");
+  Program program("vpm-graph", "Make a tool model for penetration queries from a sphere packing");
   Arguments arguments;
-  declare(tool.app(), arguments);
-  return tool.run(argc, argv, [&] { run(tool, arguments); });
+  declare(program.app(), arguments);
+  return program.run(argc, argv, [&] { run(program, arguments); });
 }

@@ -13,7 +13,7 @@
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 #include "tools/normals/scan_view.h"
 
 namespace vpm::tools {
@@ -86,18 +86,18 @@ std::string text_of(const Intrinsics& k) {
   return text;
 }
 
-void say_facts(const Tool& tool, const std::string& name, const ImportedCloud& imported) {
+void say_facts(const Program& program, const std::string& name, const ImportedCloud& imported) {
   if (imported.intrinsics_recovered) {
-    tool.note(name + ": intrinsics recovered from its points: " +
-              text_of(imported.cloud.sensor->camera.intrinsics));
+    program.note(name + ": intrinsics recovered from its points: " +
+                 text_of(imported.cloud.sensor->camera.intrinsics));
   }
-  say(tool, name, imported.remarks);
-  tool.detail(name + ": " + words_of(imported.facts));
+  say(program, name, imported.remarks);
+  program.detail(name + ": " + words_of(imported.facts));
 }
 
 // Returns the options with the numbers that they stand for in place of the names of files.
-nlohmann::json parameters_of(const Tool& tool, const ImportOptions& options) {
-  nlohmann::json parameters = tool.parameters();
+nlohmann::json parameters_of(const Program& program, const ImportOptions& options) {
+  nlohmann::json parameters = program.parameters();
   if (options.intrinsics) {
     const Intrinsics& k = *options.intrinsics;
     parameters["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
@@ -110,24 +110,25 @@ nlohmann::json parameters_of(const Tool& tool, const ImportOptions& options) {
   return parameters;
 }
 
-void run(const Tool& tool, const Arguments& a) {
-  check(a, tool.common());
+void run(const Program& program, const Arguments& a) {
+  check(a, program.common());
   if (!a.view.empty()) view::check_available();
-  const ImportOptions options = import_options(tool, a.import, a.depth);
+  const ImportOptions options = import_options(program, a.import, a.depth);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);
   ImportedCloud imported = import_cloud(bytes, name, options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_facts(tool, name, imported);
-  imported.cloud.provenance = {{"tool", tool.name()},
+  say_facts(program, name, imported);
+  imported.cloud.provenance = {{"tool", program.name()},
                                {"version", VPM_VERSION},
-                               {"parameters", parameters_of(tool, options)},
+                               {"parameters", parameters_of(program, options)},
                                {"input_hash", file::content_hash({bytes})}};
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
-  if (!a.export_path.empty()) say(tool, a.export_path, write_points(a.export_path, imported.cloud));
+  if (!a.export_path.empty())
+    say(program, a.export_path, write_points(a.export_path, imported.cloud));
   if (!a.output.empty()) write_cloud(a.output, imported.cloud);
 }
 
@@ -136,9 +137,9 @@ void run(const Tool& tool, const Arguments& a) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-normals",
-            "Make a cloud with normals from a depth image or another program's cloud");
+  Program program("vpm-normals",
+                  "Make a cloud with normals from a depth image or another program's cloud");
   Arguments arguments;
-  declare(tool.app(), arguments);
-  return tool.run(argc, argv, [&] { run(tool, arguments); });
+  declare(program.app(), arguments);
+  return program.run(argc, argv, [&] { run(program, arguments); });
 }

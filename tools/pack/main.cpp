@@ -28,9 +28,9 @@
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
+#include "tools/common/program.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
-#include "tools/common/tool.h"
 #include "tools/pack/pack_report.h"
 #include "tools/pack/pack_view.h"
 
@@ -190,20 +190,21 @@ void check(const Arguments& a, const CommonOptions& common) {
 }
 
 // Makes the solid; of a mesh that is refused, --view shows why.
-CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& mesh) {
+CheckedSolid checked_solid(const Program& program, const Arguments& a, const RawMesh& mesh) {
   try {
-    Progress progress("checking the mesh", tool.common());
+    Progress progress("checking the mesh", program.common());
     return make_solid(mesh, solid_options(a), [&](double done) { progress.update(done); });
   } catch (const Error& fault) {
     if (!a.view.empty() && fault.kind() == ErrorKind::refused)
-      write_defects_view(a.view, mesh, solid_options(a), tool.in_words_of_options(fault.problem()),
-                         tool.in_words_of_options(fault.hint()));
+      write_defects_view(a.view, mesh, solid_options(a),
+                         program.in_words_of_options(fault.problem()),
+                         program.in_words_of_options(fault.hint()));
     throw;
   }
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
-SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
+SceneScale fit_to_scene(const Program& program, const Solid& solid, Arguments& a) {
   const AnyBody cloud(read_cloud(a.for_scene));
   const double size = bounding_radius(solid, mass_properties(solid).center_of_mass);
   const SceneScale scale = scene_scale(cloud, size, std::nullopt);
@@ -214,7 +215,7 @@ SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
     refuse(a.for_scene + ": its points resolve spheres from " + std::to_string(a.min_radius) +
            " m, and --max-radius is smaller; allow larger ones, or scan more closely");
   }
-  tool.note("the scene asks for " + words_of(scale));
+  program.note("the scene asks for " + words_of(scale));
   return scale;
 }
 
@@ -230,8 +231,8 @@ std::string why_none_fits(const Arguments& a, StopReason stop) {
          "is searched for; pack it in parts";
 }
 
-PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid& checked) {
-  Progress progress("packing", tool.common());
+PackResult pack_checked(const Program& program, const Arguments& a, const CheckedSolid& checked) {
+  Progress progress("packing", program.common());
   PackOptions options;
   options.spheres = a.spheres;
   options.coverage = a.coverage;
@@ -245,9 +246,9 @@ PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid
   return result;
 }
 
-void grow_together(const Tool& tool, const Arguments& a, const CheckedSolid& checked,
+void grow_together(const Program& program, const Arguments& a, const CheckedSolid& checked,
                    PackResult& result) {
-  Progress progress("growing", tool.common());
+  Progress progress("growing", program.common());
   GrowOptions options;
   options.enclosure = &checked.enclosure;
   options.min_radius = a.min_radius;
@@ -259,18 +260,18 @@ void grow_together(const Tool& tool, const Arguments& a, const CheckedSolid& che
 }
 
 // Says what was made: the size in words shows a wrong unit, and the coverage too few spheres.
-void say_result(const Tool& tool, const Arguments& a, const MeshFacts& facts,
+void say_result(const Program& program, const Arguments& a, const MeshFacts& facts,
                 const PackResult& result) {
   const std::string count = std::to_string(result.spheres.size());
   const auto fewer = [&](const char* why) {
-    tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
+    program.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
   };
   if (result.stop == StopReason::min_radius)
     fewer("no further sphere of at least --min-radius fits");
   if (result.stop == StopReason::numerical_floor)
     fewer("the gaps that are left are narrower than 1/131072 of the longest side");
   if (result.partly_searched)
-    tool.note(
+    program.note(
         "the spheres are so small beside the solid that only samples of its inside were searched");
   const Vec3 sides = facts.high - facts.low;
   const bool is_large = std::max({sides.x, sides.y, sides.z}) >= 1;
@@ -280,29 +281,29 @@ void say_result(const Tool& tool, const Arguments& a, const MeshFacts& facts,
                 (count + (result.spheres.size() == 1 ? " sphere fills" : " spheres fill")).c_str(),
                 100 * result.coverage, sides.x / unit, sides.y / unit, sides.z / unit,
                 is_large ? "m" : "mm");
-  tool.note(text);
+  program.note(text);
 }
 
-void say_validation(const Tool& tool, const Validation& v, CheckedSolid& checked) {
+void say_validation(const Program& program, const Validation& v, CheckedSolid& checked) {
   const std::string counts = std::to_string(v.protruding_voxels) + " voxels of spheres outside, " +
                              std::to_string(v.overlapping_voxels) + " of two spheres";
   // Disputed voxels are those where the two tests of the inside disagree; they prove no fault.
   if (v.protruding_voxels > v.disputed_voxels || v.overlapping_voxels > 0) {
     checked.warnings.push_back("the count of voxels contradicts the packing: " + counts +
                                "; check the mesh, which may intersect itself");
-    tool.warn(checked.warnings.back());
+    program.warn(checked.warnings.back());
   } else {
-    tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
+    program.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
   }
 }
 
-Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
+Packing make_packing(const Program& program, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
-  nlohmann::json parameters = tool.parameters();
+  nlohmann::json parameters = program.parameters();
   for (const char* const name : {"validate", "link"}) parameters.erase(name);  // no effect on it
   Packing packing;
   packing.spheres = std::move(spheres);
-  packing.provenance = {{"tool", tool.name()},
+  packing.provenance = {{"tool", program.name()},
                         {"version", VPM_VERSION},
                         {"parameters", parameters},
                         {"input_hash", input_hash},
@@ -311,31 +312,31 @@ Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSol
   return packing;
 }
 
-void run(const Tool& tool, Arguments a) {
-  check(a, tool.common());
+void run(const Program& program, Arguments a) {
+  check(a, program.common());
   if (!a.view.empty()) view::check_available();
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = checked_solid(tool, a, parse_mesh(bytes, name, a.node));
+  CheckedSolid checked = checked_solid(program, a, parse_mesh(bytes, name, a.node));
   const std::string prefix = name + ": ";
-  for (const std::string& note : checked.notes) tool.note(prefix + note);
-  for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
+  for (const std::string& note : checked.notes) program.note(prefix + note);
+  for (const std::string& warning : checked.warnings) program.warn(prefix + warning);
 
   std::optional<SceneScale> scene;
-  if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
-  PackResult result = pack_checked(tool, a, checked);
-  if (a.grow) grow_together(tool, a, checked, result);
+  if (!a.for_scene.empty()) scene = fit_to_scene(program, checked.solid, a);
+  PackResult result = pack_checked(program, a, checked);
+  if (a.grow) grow_together(program, a, checked, result);
   const Certificate certificate = certify(checked.solid, result.spheres, &checked.enclosure);
   refuse_uncertified(a.mesh, result.coverage, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_result(tool, a, checked.facts, result);
+  say_result(program, a, checked.facts, result);
 
   std::optional<Validation> validation;
   if (a.validate) {
     validation = validate_packing(checked.solid, result.spheres);
-    say_validation(tool, *validation, checked);
+    say_validation(program, *validation, checked);
   }
   if (!a.report.empty()) {
     auto report = pack_report(checked, result, certificate, validation, seconds);
@@ -346,7 +347,7 @@ void run(const Tool& tool, Arguments a) {
   if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
   if (!a.output.empty()) {
     Packing packing =
-        make_packing(tool, file::content_hash({bytes}), std::move(checked), result.spheres);
+        make_packing(program, file::content_hash({bytes}), std::move(checked), result.spheres);
     if (scene) packing.provenance["scene"] = scene_report(*scene);
     write_packing(a.output, packing);
   }
@@ -357,10 +358,10 @@ void run(const Tool& tool, Arguments a) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
+  Program program("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
   Arguments arguments;
-  declare(tool.app(), arguments);
+  declare(program.app(), arguments);
   std::string holes = "--repair=holes";
   std::vector<char*> words = with_plain_repair(argc, argv, holes);
-  return tool.run(argc, words.data(), [&] { run(tool, arguments); });
+  return program.run(argc, words.data(), [&] { run(program, arguments); });
 }

@@ -6,7 +6,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 namespace {

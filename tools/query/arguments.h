@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tools/common/import_arguments.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 

@@ -36,13 +36,13 @@ CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
   checks_.emplace(pointers_to(setup.models), cloud,
                   measured_surface(*cloud_, setup.options.measure));
   const Remarks remarks = checks_->remarks();
-  say(setup.tool, remarks);
+  say(setup.program, remarks);
   has_said_ = !remarks.empty();
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 
 void CloudScene::warn_at_end() const {
-  if (!has_said_) say(setup_.tool, checks_->remarks());
+  if (!has_said_) say(setup_.program, checks_->remarks());
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {

@@ -32,9 +32,9 @@ double number_from(std::string_view value, const std::string& text) {
 }
 
 // Returns the stiffest contact that the tool can make, N/m. The force grows by stiffness times the
-// cross-section for each metre, and a ball of the tool's radius bounds that section.
+// cross-section for each metre, and a ball of the tool radius bounds that section.
 double stiffest_contact(const ToolModel& model, double stiffness) {
-  return stiffness * kPi * model.reach * model.reach;
+  return stiffness * kPi * model.radius * model.radius;
 }
 
 // Returns a warning if the parameters are unstable in a scene of this stiffness (N/m^3), otherwise
@@ -123,11 +123,11 @@ CouplingParameters coupling_from_text(const std::string& text, const ToolModel& 
   return p;
 }
 
-void note_coupling(const Tool& tool, const CouplingParameters& parameters, const ToolModel& model,
-                   double stiffness) {
-  tool.note("coupling: " + coupling_note(parameters));
+void note_coupling(const Program& program, const CouplingParameters& parameters,
+                   const ToolModel& model, double stiffness) {
+  program.note("coupling: " + coupling_note(parameters));
   const std::string warning = coupling_warning(parameters, model, stiffness);
-  if (!warning.empty()) tool.warn(warning);
+  if (!warning.empty()) program.warn(warning);
 }
 
 std::string coupled_line(const CoupledStep& s, const std::string& frame) {
@@ -160,15 +160,15 @@ void run_coupling(QuerySetup& setup) {
   const CouplingParameters parameters =
       coupling_from_text(a.coupling, model, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);
-  note_lines(setup.tool, a.poses, path.path().undefined(), path.path().doubled());
+  note_lines(setup.program, a.poses, path.path().undefined(), path.path().doubled());
   const Pose first = path.pose(0);
   LevelToolQuery query(model, setup.options, setup.level, scene.cloud(), first);
-  note_scale(setup.tool, query);
-  note_coupling(setup.tool, parameters, model, setup.options.stiffness);
+  note_scale(setup.program, query);
+  note_coupling(setup.program, parameters, model, setup.options.stiffness);
   CoupledRun run = follow(path, VirtualCoupling(parameters, model.center_of_mass, first), query,
                           scene, setup.view, output);
   output.finish();
-  note_deviation(setup.tool, "", reader.largest_deviation());
+  note_deviation(setup.program, "", reader.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);

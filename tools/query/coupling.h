@@ -7,7 +7,7 @@
 
 #include "libvpm/haptics/virtual_coupling.h"
 #include "libvpm/model/tool_model.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 
@@ -18,8 +18,8 @@ CouplingParameters coupling_from_text(const std::string& text, const ToolModel& 
 
 // Notes mass, gyration and the damping that a real device needs to render the coupling, and warns
 // if it is unstable in a scene of this stiffness (N/m^3).
-void note_coupling(const Tool& tool, const CouplingParameters& parameters, const ToolModel& model,
-                   double stiffness);
+void note_coupling(const Program& program, const CouplingParameters& parameters,
+                   const ToolModel& model, double stiffness);
 
 // Step of a haptic device that holds the tool by a spring and a damper.
 struct CoupledStep {

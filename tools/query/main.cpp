@@ -6,11 +6,11 @@
 namespace vpm::tools {
 namespace {
 
-void run(Tool& tool, const Arguments& arguments) {
+void run(Program& program, const Arguments& arguments) {
   const Mode mode = mode_of(arguments);
-  check_options(tool.app(), mode);
-  check_names(arguments, tool.common());
-  QuerySetup setup(tool, arguments);
+  check_options(program.app(), mode);
+  check_names(arguments, program.common());
+  QuerySetup setup(program, arguments);
   switch (mode) {
     case Mode::poses:
     case Mode::batches:
@@ -29,9 +29,9 @@ void run(Tool& tool, const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
+  Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
-  declare(tool.app(), arguments);
-  tool.computes_on_devices();
-  return tool.run(argc, argv, [&] { run(tool, arguments); });
+  declare(program.app(), arguments);
+  program.computes_on_devices();
+  return program.run(argc, argv, [&] { run(program, arguments); });
 }

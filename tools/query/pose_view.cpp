@@ -139,7 +139,7 @@ void PoseView::add_facts(view::Page& page) const {
     page.add_fact("cloud", name + maker_of(cloud.provenance));
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
-  if (options_.occluded == OccludedSpace::solid) page.add_fact("shadows", "solid");
+  if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
   if (options_.stiffness != 1)
     page.add_fact("stiffness", view::with_unit(options_.stiffness, "N/m³"));
   if (every_ > 1)
@@ -259,7 +259,7 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
     states.resize(levels_[tool], kUnused);
     view::append_bits(states, bits);
   }
-  const std::size_t body = page.add_body(names_[tool], model.center_of_mass, model.reach, poses);
+  const std::size_t body = page.add_body(names_[tool], model.center_of_mass, model.radius, poses);
   const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
   page.add_spheres({.name = "spheres by state" + of,
                     .spheres = {model.spheres.data(), levels_[tool]},

@@ -65,12 +65,12 @@ void run_poses(QuerySetup& setup) {
   CloudScene scene(setup);
   file::Output output(a.output);
   PoseQueries queries(setup, scene, source.first(), output);
-  note_scale(setup.tool, queries.query());
+  note_scale(setup.program, queries.query());
   const bool together = a.batch > 1;
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     together ? queries.ask_together(poses) : queries.ask(poses.front());
   output.finish();
-  note_deviation(setup.tool, "", source.largest_deviation());
+  note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);

@@ -84,24 +84,24 @@ nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,
   return stats;
 }
 
-void note_deviation(const Tool& tool, const std::string& what, double deviation) {
+void note_deviation(const Program& program, const std::string& what, double deviation) {
   if (!(deviation > kRotationRounding)) return;
   char text[96];
   std::snprintf(text, sizeof text,
                 "rotations were up to %.2g away from orthonormal and have been normalised",
                 deviation);
-  tool.note((what.empty() ? "" : what + ": ") + text);
+  program.note((what.empty() ? "" : what + ": ") + text);
 }
 
-void note_lines(const Tool& tool, const std::string& name, std::size_t undefined,
+void note_lines(const Program& program, const std::string& name, std::size_t undefined,
                 std::size_t doubled) {
   const std::string where = name == "-" ? "standard input" : name;
   if (undefined > 0)
-    tool.note(where + ": poses passed over, since their numbers are not finite or all zero: " +
-              std::to_string(undefined));
+    program.note(where + ": poses passed over, since their numbers are not finite or all zero: " +
+                 std::to_string(undefined));
   if (doubled > 0)
-    tool.note(where + ": lines passed over, since they give the line before again: " +
-              std::to_string(doubled));
+    program.note(where + ": lines passed over, since they give the line before again: " +
+                 std::to_string(doubled));
 }
 
 }  // namespace vpm::tools

@@ -9,7 +9,7 @@
 
 #include "libvpm/include/vpm/level_query.h"
 #include "libvpm/query/tool_query.h"
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 
@@ -37,11 +37,11 @@ nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_
 
 // Notes that rotations have been normalised, if the deviation is beyond rounding. `what` names the
 // file; "" leaves it out.
-void note_deviation(const Tool& tool, const std::string& what, double deviation);
+void note_deviation(const Program& program, const std::string& what, double deviation);
 
 // Notes how many lines of a file of poses were skipped since they are undefined, and how many were
 // dropped since they give the line before again.
-void note_lines(const Tool& tool, const std::string& name, std::size_t undefined,
+void note_lines(const Program& program, const std::string& name, std::size_t undefined,
                 std::size_t doubled);
 
 }  // namespace vpm::tools

@@ -32,19 +32,19 @@ std::vector<ToolModel> read_models(const std::vector<std::string>& names) {
 
 // Returns the CPU for what no device computes (coherent poses, the measure as printed), unless a
 // device is named.
-Device device_of(const Tool& tool, const Arguments& a) {
+Device device_of(const Program& program, const Arguments& a) {
   const bool is_on_cpu = a.coherent || a.measure == "paper";
-  return is_on_cpu && tool.common().device == "auto" ? Device{} : tool.device();
+  return is_on_cpu && program.common().device == "auto" ? Device{} : program.device();
 }
 
-QueryOptions query_options(const Tool& tool, const Arguments& a) {
+QueryOptions query_options(const Program& program, const Arguments& a) {
   QueryOptions options;
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
   options.level = a.level;
   options.stiffness = a.stiffness.value_or(1);
-  options.occluded = a.shadows == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach;
+  options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
-  options.device = device_of(tool, a);
+  options.device = device_of(program, a);
   return options;
 }
 
@@ -68,14 +68,14 @@ void write_spheres(const std::string& path, std::span<const Sphere> spheres,
 
 }  // namespace
 
-QuerySetup::QuerySetup(const Tool& t, const Arguments& a)
-    : tool(t),
+QuerySetup::QuerySetup(const Program& p, const Arguments& a)
+    : program(p),
       arguments(a),
       level(level_request(a)),
       models(read_models(a.tools)),
       points(denoising_of(a)) {
   for (const ToolModel& model : models) model.level(a.level);  // throws if it has no such level
-  options = query_options(tool, a);
+  options = query_options(program, a);
   if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);
 }
 
@@ -85,15 +85,15 @@ std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models) 
   return pointers;
 }
 
-void say(const Tool& tool, const Remarks& remarks) {
+void say(const Program& program, const Remarks& remarks) {
   for (const Remark& remark : remarks)
-    remark.is_warning ? tool.warn(remark.text) : tool.note(remark.text);
+    remark.is_warning ? program.warn(remark.text) : program.note(remark.text);
 }
 
-void note_scale(const Tool& tool, const LevelToolQuery& query) {
+void note_scale(const Program& program, const LevelToolQuery& query) {
   if (!query.scale()) return;
-  tool.note("the scene resolves " + words_of(*query.scale()) + ": the level of " +
-            std::to_string(query.finest().sphere_count) + " is enough");
+  program.note("the scene resolves " + words_of(*query.scale()) + ": the level of " +
+               std::to_string(query.finest().sphere_count) + " is enough");
 }
 
 void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last) {

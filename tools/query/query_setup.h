@@ -17,11 +17,11 @@ namespace vpm::tools {
 struct QuerySetup {
   // Reads the models. The tool and its arguments must outlive this. Throws Error for what the
   // arguments, the models or the device refuse.
-  QuerySetup(const Tool& tool, const Arguments& arguments);
+  QuerySetup(const Program& program, const Arguments& arguments);
   QuerySetup(const QuerySetup&) = delete;
   QuerySetup& operator=(const QuerySetup&) = delete;
 
-  const Tool& tool;
+  const Program& program;
   const Arguments& arguments;
   LevelRequest level;
   std::vector<ToolModel> models;  // one per --tool
@@ -34,10 +34,10 @@ struct QuerySetup {
 std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models);
 
 // Prints what the checks of a setup say.
-void say(const Tool& tool, const Remarks& remarks);
+void say(const Program& program, const Remarks& remarks);
 
 // Notes the level that the scene's points resolve, if --for-scene chose it.
-void note_scale(const Tool& tool, const LevelToolQuery& query);
+void note_scale(const Program& program, const LevelToolQuery& query);
 
 // Writes --spheres-out for the pose that the query answered last.
 void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last);

@@ -33,8 +33,8 @@ class Replay {
   // Reads the recording and the path, which has `rate` steps per second. Prepares depth images on
   // the device of the queries, and reads frames without a camera as `points` says. Throws what the
   // readers throw, and Error(refused) if recording and path share no time or no frame can be used.
-  Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
-         Denoising points);
+  Replay(const Program& program, const ReplayArguments& arguments, double rate,
+         const Device& device, Denoising points);
 
   const SampledPath& path() const { return path_; }
   // Returns the first frame that can be used, by which levels are chosen.
@@ -75,7 +75,7 @@ class Replay {
   CoupledStep ask(std::size_t k, LevelToolQuery& query,
                   std::optional<VirtualCoupling>& coupling) const;
 
-  const Tool& tool_;
+  const Program& program_;
   const ReplayArguments& arguments_;
   double rate_;
   Recording recording_;
@@ -103,22 +103,23 @@ std::string name_of(const std::string& path) {
 }
 
 // Warns of a time without poses, across which they are interpolated.
-void warn_of_gap(const Tool& tool, const std::string& name, const std::optional<PoseGap>& gap) {
+void warn_of_gap(const Program& program, const std::string& name,
+                 const std::optional<PoseGap>& gap) {
   if (!gap) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 ": no pose from %.3f to %.3f s, more than ten times as long as from one pose to "
                 "the next elsewhere; poses in between are interpolated",
                 gap->start, gap->end);
-  tool.warn(name + text);
+  program.warn(name + text);
 }
 
-SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
+SampledPath read_path(const Program& program, const std::string& name, double rate) {
   PoseReader reader(name);
   SampledPath path(TimedPath(reader), rate);
-  note_deviation(tool, name, reader.largest_deviation());
-  note_lines(tool, name, path.path().undefined(), path.path().doubled());
-  warn_of_gap(tool, name, path.path().improbable_gap());
+  note_deviation(program, name, reader.largest_deviation());
+  note_lines(program, name, path.path().undefined(), path.path().doubled());
+  warn_of_gap(program, name, path.path().improbable_gap());
   return path;
 }
 
@@ -126,13 +127,13 @@ RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 
-Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
+Replay::Replay(const Program& program, const ReplayArguments& arguments, double rate,
                const Device& device, Denoising points)
-    : tool_(tool),
+    : program_(program),
       arguments_(arguments),
       rate_(rate),
-      path_(read_path(tool, arguments.trajectory, rate)),
-      import_(import_options(tool, arguments.import)),
+      path_(read_path(program, arguments.trajectory, rate)),
+      import_(import_options(program, arguments.import)),
       device_(device),
       points_(points) {
   recording_ = read_recording(arguments.frames, recording_options(arguments, import_));
@@ -140,11 +141,11 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
     const IntrinsicsFile& file = *recording_.intrinsics;
     const std::string name = arguments_.frames + "/camera-intrinsics.txt";
     import_.intrinsics = file.intrinsics;
-    tools::say(tool_, name, file.remarks);
-    tools::say(tool_, name, unused_factor(file.factor, import_.depth.units_per_metre));
+    tools::say(program_, name, file.remarks);
+    tools::say(program_, name, unused_factor(file.factor, import_.depth.units_per_metre));
     check_intrinsics(*import_.intrinsics);
-    tool_.note("intrinsics " + intrinsics_text(*import_.intrinsics) +
-               " are read from camera-intrinsics.txt in " + arguments_.frames);
+    program_.note("intrinsics " + intrinsics_text(*import_.intrinsics) +
+                  " are read from camera-intrinsics.txt in " + arguments_.frames);
   }
   note_sources();
   schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
@@ -153,19 +154,19 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
 
 void Replay::note_sources() const {
   if (recording_.camera_source.empty()) {
-    tool_.note("the camera does not move: " + arguments_.frames +
-               (import_.to_world ? " is seen from --camera-pose"
-                                 : " has no poses of it, and no --camera-poses are given"));
+    program_.note("the camera does not move: " + arguments_.frames +
+                  (import_.to_world ? " is seen from --camera-pose"
+                                    : " has no poses of it, and no --camera-poses are given"));
   } else {
-    tool_.detail("poses of the camera: " + recording_.camera_source);
+    program_.detail("poses of the camera: " + recording_.camera_source);
   }
-  note_deviation(tool_, recording_.camera_source, recording_.largest_deviation);
-  note_lines(tool_, recording_.camera_source, recording_.camera_undefined,
+  note_deviation(program_, recording_.camera_source, recording_.largest_deviation);
+  note_lines(program_, recording_.camera_source, recording_.camera_undefined,
              recording_.camera_doubled);
-  warn_of_gap(tool_, recording_.camera_source, recording_.camera_gap);
+  warn_of_gap(program_, recording_.camera_source, recording_.camera_gap);
   warn_of_improbable_times();
   if (!recording_.has_clock && path_.path().has_times())
-    tool_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
+    program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
 }
 
 void Replay::warn_of_improbable_times() const {
@@ -175,7 +176,7 @@ void Replay::warn_of_improbable_times() const {
   if (interval >= kShortest && interval <= kLongest) return;
   char apart[32];
   std::snprintf(apart, sizeof apart, "%.2g", interval);
-  tool_.warn(
+  program_.warn(
       "the frames are " + std::string(apart) + " s apart, as their names or their list " +
       (recording_.has_clock ? "tell their times" : "number them") +
       ", which is unusual; if that is wrong, give --frames a list of \"seconds file\" lines");
@@ -211,7 +212,7 @@ void Replay::find_first_body() {
     first_camera_ = prepared.camera;
     first_body_ = std::move(prepared.body);
     if (!first_body_) continue;
-    tools::say(tool_, recording_.frames[prepared.frame].path, prepared.remarks);
+    tools::say(program_, recording_.frames[prepared.frame].path, prepared.remarks);
     return;
   }
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
@@ -284,8 +285,8 @@ std::string Replay::frame_name() const {
 
 void Replay::say(const PreparedChange& change) {
   const auto say_one = [&](const std::string& text) {
-    if (said_ < kMostWarnings) tool_.warn(text);
-    if (++said_ == kMostWarnings) tool_.warn("further frames like these are only counted");
+    if (said_ < kMostWarnings) program_.warn(text);
+    if (++said_ == kMostWarnings) program_.warn("further frames like these are only counted");
   };
   const std::string went_on =
       feed_->frame() ? "; the loop goes on with " + frame_name() : "; there is none before it";
@@ -303,19 +304,19 @@ void Replay::compare_size(const PreparedChange& change) {
   const bool is_same_size = own.width == first.width && own.height == first.height;
   if (is_same_size || k.fx != l.fx || k.fy != l.fy || k.cx != l.cx || k.cy != l.cy) return;
   sizes_differ_ = true;
-  tool_.warn(recording_.frames[change.frame].path + ": has " + std::to_string(own.width) + " x " +
-             std::to_string(own.height) + " pixels, and the first frame " +
-             std::to_string(first.width) + " x " + std::to_string(first.height) +
-             ": the same intrinsics hardly fit both");
+  program_.warn(recording_.frames[change.frame].path + ": has " + std::to_string(own.width) +
+                " x " + std::to_string(own.height) + " pixels, and the first frame " +
+                std::to_string(first.width) + " x " + std::to_string(first.height) +
+                ": the same intrinsics hardly fit both");
 }
 
 void Replay::say_at_end() const {
   if (recording_.missing > 0)
-    tool_.warn(std::to_string(recording_.missing) + " frames of " + arguments_.frames +
-               " are missing; the loop went on with those before");
+    program_.warn(std::to_string(recording_.missing) + " frames of " + arguments_.frames +
+                  " are missing; the loop went on with those before");
   if (steps_without_frame_ > 0)
-    tool_.warn(std::to_string(steps_without_frame_) +
-               " steps came before the first frame that can be used: nothing is in their way");
+    program_.warn(std::to_string(steps_without_frame_) +
+                  " steps came before the first frame that can be used: nothing is in their way");
   const Durations latency(clock_->latencies());
   char text[256];
   std::snprintf(text, sizeof text,
@@ -324,7 +325,7 @@ void Replay::say_at_end() const {
                 latency.size(), wall_seconds_, path_.time(path_.steps()) / wall_seconds_,
                 1e6 * latency.quantile(0.5), 1e6 * latency.quantile(0.99),
                 1e6 * latency.quantile(1), feed_->counts().used);
-  tool_.note(text);
+  program_.note(text);
 }
 
 double Replay::prepare_seconds() const {
@@ -358,25 +359,25 @@ void run_frames(QuerySetup& setup) {
   const std::optional<CouplingParameters> parameters = coupling_of(a, model);
   const double rate =
       parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
-  Replay replay(setup.tool, a.replay, rate, setup.options.device, setup.points);
+  Replay replay(setup.program, a.replay, rate, setup.options.device, setup.points);
   const Pose first = replay.path().pose(0);
   LevelToolQuery query(model, setup.options, setup.level, replay.first_body(), first);
-  note_scale(setup.tool, query);
+  note_scale(setup.program, query);
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
-    note_coupling(setup.tool, *parameters, model, setup.options.stiffness);
+    note_coupling(setup.program, *parameters, model, setup.options.stiffness);
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   file::Output output(a.output);
   const std::vector<const ToolModel*> tools = pointers_to(setup.models);
   const std::optional<Remark> sizes = improbable_sizes(tools, replay.first_scene(), true);
-  if (sizes) say(setup.tool, {*sizes});
+  if (sizes) say(setup.program, {*sizes});
   PoseCheck check(tools, replay.source(),
                   [&](std::size_t frame) { return replay.scene_of(frame); });
   replay.run(query, check, coupling, setup.options.measure, output, setup.view);
   output.finish();
   const std::optional<Remark> missing = check.remark();
-  if (missing && !sizes) say(setup.tool, {*missing});
+  if (missing && !sizes) say(setup.program, {*missing});
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_body().positions().size();

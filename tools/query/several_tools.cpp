@@ -20,7 +20,7 @@ class SeveralTools {
       queries_.emplace_back(model, setup.options, setup.level, cloud_, first_pose);
       together_.push_back(&queries_.back().query());
     }
-    for (const LevelToolQuery& query : queries_) note_scale(setup.tool, query);
+    for (const LevelToolQuery& query : queries_) note_scale(setup.program, query);
   }
 
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
@@ -87,7 +87,7 @@ void run_several_tools(QuerySetup& setup) {
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     tools.ask(poses, output);
   output.finish();
-  note_deviation(setup.tool, "", source.largest_deviation());
+  note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
   stats["cloud_points"] = scene.cloud().positions().size();

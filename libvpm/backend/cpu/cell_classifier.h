@@ -47,15 +47,15 @@ class CellClassifier {
     const Vec3 center = work_.to_surface * whole.center;
     const BallClass in_ball = work_.surface.classify_ball(center, whole.reach);
     ClusterClass found =
-        class_of_cluster(work_.surface, in_ball, center, whole.reach, work_.reach.length);
+        class_of_cluster(work_.surface, in_ball, center, whole.reach, work_.tool_radius.length);
     // A flood asks the middle only where it comes.
     if (Surface::kTellsInside && found == ClusterClass::by_middle)
       found = class_by_middle(work_.surface, work_.surface.sample(center), center, whole.reach,
-                              work_.reach.length);
+                              work_.tool_radius.length);
     if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
-      if (!finds_cluster_plane(work_.surface, in_ball, center, whole.reach, work_.reach.length,
-                               SampleTogether{}, plane))
+      if (!finds_cluster_plane(work_.surface, in_ball, center, whole.reach,
+                               work_.tool_radius.length, SampleTogether{}, plane))
         return classify_nodes(root);
       work_.states.planes[root] = {plane, work_.to_surface};
       return classify_clipped(root, in_ball);
@@ -77,7 +77,7 @@ class CellClassifier {
       const Vec3 center = work_.to_surface * part.center;
       const BallClass in_ball = work_.surface.classify_ball(center, part.reach);
       if (const ClusterClass side =
-              class_of_ball(work_.surface, in_ball, center, part.reach, work_.reach.length);
+              class_of_ball(work_.surface, in_ball, center, part.reach, work_.tool_radius.length);
           side != ClusterClass::ambiguous) {
         work_.states.set(part, side);
         node = next;
@@ -117,8 +117,8 @@ class CellClassifier {
     std::uint32_t node = first;
     while (node < last) {
       const auto& [part, next] = nodes[node];
-      const PlaneSide side =
-          side_of_plane(plane.distance(part.center), part.reach + kRounding * work_.reach.length);
+      const PlaneSide side = side_of_plane(plane.distance(part.center),
+                                           part.reach + kRounding * work_.tool_radius.length);
       if (side == PlaneSide::before) {
         work_.states.set(part, CellClass::free, FloodState::closed);
         node = next;

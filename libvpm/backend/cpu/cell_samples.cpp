@@ -10,7 +10,7 @@ namespace {
 
 using FourSamples = SurfaceSampleOf<Double4>;
 
-[[gnu::always_inline]] inline FourSamples read_at(const DepthSurface& surface, const Vec3x4& x) {
+[[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});
 }
 // Joins four known samples into lanes.
@@ -50,7 +50,7 @@ struct FourRows {
 VPM_VECTOR_CLONES
 void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]) {
-  const FourSamples four = read_at(surface, {places[0], places[1], places[2], places[3]});
+  const FourSamples four = sample_at(surface, {places[0], places[1], places[2], places[3]});
   for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
 }
 
@@ -63,7 +63,7 @@ std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface
     const auto [a, b, c, d] = four_of(samples, first);
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const FourSamples four = read_at(surface, x);
+    const FourSamples four = sample_at(surface, x);
     const Mask4 reached = four.known & (four.distance < radius);
     if (!any(reached)) continue;
     for (int k = 0; k < kFour && first + k < count; ++k) {

@@ -42,8 +42,8 @@ ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples
 
 // True for a surface that vectors sample at several places at once.
 template <class Surface>
-concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
-                                 SurfaceSample (&on_surface_at)[4]) {
+concept SamplesFour = requires(const Surface& surface, const Vec3 (&places)[4],
+                               SurfaceSample (&on_surface_at)[4]) {
   sample_four(surface, places, on_surface_at);
 };
 
@@ -51,7 +51,7 @@ concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4]
 struct SampleTogether : SampleInTurn {
   template <class Surface, class Take>
   bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
-    if constexpr (ReadsTogether<Surface>) {
+    if constexpr (SamplesFour<Surface>) {
       SurfaceSample on_surface_at[4];
       sample_four(surface, places, on_surface_at);
       return std::all_of(std::begin(on_surface_at), std::end(on_surface_at), take);
@@ -131,6 +131,6 @@ class SamplesTogether {
 };
 
 template <class Surface>
-using SamplesOnHost = std::conditional_t<ReadsTogether<Surface>, SamplesTogether, SamplesOneByOne>;
+using SamplesOnHost = std::conditional_t<SamplesFour<Surface>, SamplesTogether, SamplesOneByOne>;
 
 }  // namespace vpm

@@ -126,7 +126,7 @@ struct CellStates {
 // Bundles what the steps of a query know of its pose.
 template <class Surface>
 struct PoseWork {
-  ToolReach reach;
+  ToolRadius tool_radius;
   const SpatialLevel& level;
   const Surface& surface;
   const Pose& to_surface;  // maps coordinates about the tool's centre of mass
@@ -135,7 +135,7 @@ struct PoseWork {
   // Returns the centre of a cell's sphere in the surface's frame.
   Vec3 center(std::uint32_t row) const { return to_surface * level.cell(row).center; }
   CellMeasure<Surface> measure_of(const CellView& cell) const {
-    return {surface, to_surface, reach, cell};
+    return {surface, to_surface, tool_radius, cell};
   }
   // Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
   // sample at its centre.
@@ -198,12 +198,12 @@ class CutCells {
   // Returns a test of far places of one cell, true for a place x behind the surface's place `foot`,
   // surface frame, that is inside: by the plane of the nearest cut cell, found when first needed,
   // or, where nothing is cut, `where_nothing_is_cut`. `last` is as for nearest_to().
-  auto support(std::uint32_t row, double reach, bool where_nothing_is_cut,
+  auto support(std::uint32_t row, double tool_radius, bool where_nothing_is_cut,
                std::uint32_t& last) const {
     return [=, this, &last, nearest = std::optional<CutCell>()](Vec3 x, Vec3 foot) mutable {
       if (are_none()) return where_nothing_is_cut;
       if (!nearest) nearest = nearest_to(row, last);
-      return nearest->supports(x, foot, reach);
+      return nearest->supports(x, foot, tool_radius);
     };
   }
 

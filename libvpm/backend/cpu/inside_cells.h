@@ -12,7 +12,7 @@
 
 namespace vpm {
 
-// Decides where a camera has seen the surface: cells behind it within the tool's radius are inside.
+// Decides where a camera has seen the surface: cells behind it within the tool radius are inside.
 // Further behind, the nearest cut cell's plane or the pose memory decides.
 template <class Surface>
 class CameraVisibility {
@@ -40,11 +40,11 @@ class CameraVisibility {
   }
 
   auto support(std::uint32_t row, std::uint32_t& last_cut) const {
-    return cut_.support(row, work_.reach.length, follows(row), last_cut);
+    return cut_.support(row, work_.tool_radius.length, follows(row), last_cut);
   }
 
   // Sets up which cells the next pose remembers. Cells that count only because something hides them
-  // are left out: what hides them must be within the tool's radius before the mean plane of the
+  // are left out: what hides them must be within the tool radius before the mean plane of the
   // last cut cells, and where nothing is cut, near them, and some cell must have stayed.
   void begin_to_remember(const Pose& to_world, PoseMemory& memory) {
     to_world_ = to_world;
@@ -57,17 +57,17 @@ class CameraVisibility {
   // True if a cell behind the surface's place `foot`, world frame, may be remembered.
   bool is_sure(std::uint32_t row, Vec3 foot) const {
     if (follows(row)) return true;
-    if (plane_.distance(foot) > work_.reach.length) return false;
+    if (plane_.distance(foot) > work_.tool_radius.length) return false;
     const double squared = squared_norm(foot - to_world_ * work_.center(row));
-    return !cut_.are_none() || (any_stays_ && !is_hidden_cell(squared, work_.reach.length));
+    return !cut_.are_none() || (any_stays_ && !is_hidden_cell(squared, work_.tool_radius.length));
   }
 
  private:
   bool stays(std::uint32_t row, const PoseMemory& memory, const Pose& to_world) const {
     if (work_.states.cells[row] == CellClass::free) return false;
     const SurfaceSample on_surface = work_.surface.sample(work_.center(row));
-    return on_surface.known &&
-           memory.is_near(work_.level.root(row), to_world * on_surface.foot, work_.reach.length);
+    return on_surface.known && memory.is_near(work_.level.root(row), to_world * on_surface.foot,
+                                              work_.tool_radius.length);
   }
   TangentPlane mean_plane_of_cut() const {
     Vec3 normal, foot;
@@ -117,12 +117,12 @@ class InsideFlood {
     };
     memory.for_cells([&](std::uint32_t i) {
       if (is_behind(i, [&](Vec3, Vec3 foot) {
-            return memory.is_near(work_.level.root(i), to_world * foot, work_.reach.length);
+            return memory.is_near(work_.level.root(i), to_world * foot, work_.tool_radius.length);
           }))
         take_open(i);
     });
     const auto is_near = [&](Vec3 at, Vec3 foot) {
-      return squared_norm(foot - at) <= work_.reach.length * work_.reach.length;
+      return squared_norm(foot - at) <= work_.tool_radius.length * work_.tool_radius.length;
     };
     while (!part.front.empty()) {
       for (const std::uint32_t j : work_.level.neighbors(next_of(part))) {
@@ -133,7 +133,7 @@ class InsideFlood {
 
   // Returns the support for a cell that the flood has taken.
   auto support(std::uint32_t row, std::uint32_t& last_cut) const {
-    return cut_.support(row, work_.reach.length, true, last_cut);
+    return cut_.support(row, work_.tool_radius.length, true, last_cut);
   }
   // Remembers all cells that count (see CameraVisibility).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
@@ -276,7 +276,7 @@ class InsideFlood {
     const Vec3 at = work_.to_surface * cluster.center;
     const SurfaceSample middle = work_.surface.sample(at);
     const ClusterClass found =
-        class_by_middle(work_.surface, middle, at, cluster.reach, work_.reach.length);
+        class_by_middle(work_.surface, middle, at, cluster.reach, work_.tool_radius.length);
     if (found == ClusterClass::uniform)
       work_.push(cluster, root, middle);
     else
@@ -291,7 +291,7 @@ class InsideFlood {
       work_.states.cells[j] = CellClass::whole;
     }
     work_.states.squared_gaps[j] = squared_gap(on_surface);
-    const bool is_hidden = is_hidden_cell(work_.states.squared_gaps[j], work_.reach.length);
+    const bool is_hidden = is_hidden_cell(work_.states.squared_gaps[j], work_.tool_radius.length);
     return passes(is_hidden, [&] { return cut_.nearest_to(j, part.last_cut).is_behind(at); })
                ? FloodState::open
                : FloodState::closed;

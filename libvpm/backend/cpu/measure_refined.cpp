@@ -17,7 +17,7 @@ void enter_near(DiskSurface& disks, Vec3 center, double radius) {
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
     : tool_(tool),
-      reach_(tool.reach, options.occluded),
+      tool_radius_(tool.radius, options.shadows),
       level_(tool, level),
       cells_(level_),
       is_coherent_(options.coherent) {}
@@ -28,7 +28,7 @@ BodySum RefinedMeasure::run(const AnyBody& body, const Pose& pose, std::size_t p
     auto surface = one.surface();
     const Pose& to_world = one.to_world();
     enter_near(surface, pose_in_body(to_world, pose, tool_.center_of_mass).translation,
-               kPlaces * tool_.reach);
+               kPlaces * tool_.radius);
     return run_on(surface, to_world, pose, place);
   });
 }

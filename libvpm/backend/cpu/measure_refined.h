@@ -39,7 +39,7 @@ class RefinedMeasure {
     BodySum result;
     PoseMemory* const memory = memory_of(place);
     const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
-    const PoseWork<Surface> work{reach_, level_, surface, to_surface, cells_};
+    const PoseWork<Surface> work{tool_radius_, level_, surface, to_surface, cells_};
     ParallelRegion region;
     CellClassifier(work).run(region);
     CutCells cut(tool_, level_, to_surface, cells_);
@@ -115,7 +115,7 @@ class RefinedMeasure {
                  std::uint32_t& last_cut) const {
     ToolSum sum;
     if (cells_.cells[row] == CellClass::uniform) {
-      add_whole(reach_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
+      add_whole(tool_radius_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
       return sum;
     }
     const bool partial = cells_.cells[row] == CellClass::partial;
@@ -165,7 +165,7 @@ class RefinedMeasure {
   }
 
   const ToolModel& tool_;
-  ToolReach reach_;
+  ToolRadius tool_radius_;
   SpatialLevel level_;
   CellStates cells_;
   bool is_coherent_;

@@ -23,7 +23,7 @@ std::uint32_t for_points_inside(const Points& points, const ToolModel& tool, con
   const Vec3 center = pose.rotation * tool.center_of_mass + (pose.translation - points.origin());
   ranges.clear();
   ranges.reserve(points.most_ranges());
-  points.for_ranges_in_ball(center, tool.reach,
+  points.for_ranges_in_ball(center, tool.radius,
                             [&](std::uint32_t b, std::uint32_t e) { ranges.emplace_back(b, e); });
 
   const GridView grid = view_of(level.grid);

@@ -31,8 +31,9 @@ class PoseMemory {
         if (was_inside(cell)) visit(cell);
     }
   }
-  bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
-    return last_.known[cluster] && squared_norm(foot - last_.feet[cluster]) <= reach * reach;
+  bool is_near(std::uint32_t cluster, Vec3 foot, double tool_radius) const {
+    return last_.known[cluster] &&
+           squared_norm(foot - last_.feet[cluster]) <= tool_radius * tool_radius;
   }
   // Returns the plane in which the surface last cut the tool, world coordinates.
   const TangentPlane& touched() const { return touched_; }

@@ -53,7 +53,7 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
       CellGroup& last = groups_.back();
       const CellCluster ball =
           enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
-      if (ball.reach <= kGroupReach * tool.reach) {
+      if (ball.reach <= kGroupReach * tool.radius) {
         last.ball = ball;
         last.end = root + 1;
         continue;
@@ -65,7 +65,7 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
 }
 
 void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
-  Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_reach[sphere],
+  Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_radius[sphere],
             static_cast<std::uint32_t>(blocks_.size()), 0};
   for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
     CellBlock block = level.blocks[b];

@@ -47,7 +47,7 @@ inline RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t 
   std::uint32_t words[Answer::kWords];
   unsigned looks = 0;
   for (unsigned k = 0; k < Answer::kWords;) {
-    const NumberedWord word = look_at(answer.words[k]);
+    const NumberedWord word = poll(answer.words[k]);
     if (number_of(word) == sequence) {
       words[k++] = value_of(word);
       continue;

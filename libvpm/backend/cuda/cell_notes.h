@@ -40,7 +40,7 @@ struct CellNotes {
 };
 
 // The plane that cuts a block and clips all its samples.
-struct FlatBlock {
+struct ClippedBlock {
   ClipPlane plane;
   Vec3 center;
 };
@@ -81,7 +81,8 @@ struct RefinedSpace {
   std::uint32_t* parents = nullptr;  // count + 1: the entry, then cells
   std::uint32_t* cut = nullptr;      // rows of the cut cells, where they are needed
   FarPiece* far = nullptr;
-  FlatBlock* flats = nullptr;                // planes of each thread block's lists of flat tasks
+  ClippedBlock* clipped_blocks =
+      nullptr;  // planes of each thread block's lists of tasks of clipped blocks
   PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
@@ -126,7 +127,7 @@ struct PoseWork {
   BlockRange part;
 
   __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
-    return {surface, to_surface, level.tool_reach, view};
+    return {surface, to_surface, level.tool_radius, view};
   }
 
   // Adds a piece that is inside or cut; lists a far one. `normal` is the way out of an uncut one.
@@ -279,7 +280,7 @@ class CutCells {
       if (!cut && !may_count(i)) continue;
       const std::uint32_t by = cut ? i : nearest_to(warp, i);
       if (by < level_.count && warp.leads() &&
-          at(by).supports(far.at, far.foot, level_.tool_reach.length))
+          at(by).supports(far.at, far.foot, level_.tool_radius.length))
         add(i, far.sum);
     }
   }

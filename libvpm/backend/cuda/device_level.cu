@@ -9,31 +9,31 @@ namespace {
 
 template <class SomeTask>
 struct GroupedTasks {
-  std::vector<SomeTask> units;
-  std::vector<TaskGroup> chunks;
+  std::vector<SomeTask> tasks;
+  std::vector<TaskGroup> groups;
 };
 
 // Adds block tasks of a cluster in groups of `at_once`.
 template <class SomeTask>
-void add_chunks(const CellCluster& cluster, std::span<const WarpTask> some, std::size_t at_once,
+void add_groups(const CellCluster& cluster, std::span<const WarpTask> some, std::size_t at_once,
                 GroupedTasks<SomeTask>& out) {
   for (; !some.empty(); some = some.subspan(std::min(at_once, some.size()))) {
     const std::span<const WarpTask> these = some.first(std::min(at_once, some.size()));
-    const auto begin = static_cast<std::uint32_t>(out.units.size());
-    out.units.insert(out.units.end(), these.begin(), these.end());
-    out.chunks.push_back(
+    const auto begin = static_cast<std::uint32_t>(out.tasks.size());
+    out.tasks.insert(out.tasks.end(), these.begin(), these.end());
+    out.groups.push_back(
         {{cluster.center, cluster.reach}, begin, begin + static_cast<std::uint32_t>(these.size())});
   }
 }
 // Adds block tasks of a cluster in groups of `at_once`, and fills the last group up with tasks
 // without flags, of which nothing counts.
-void add_whole_chunks(const CellCluster& cluster, std::span<const WarpTask> some,
+void add_whole_groups(const CellCluster& cluster, std::span<const WarpTask> some,
                       std::size_t at_once, GroupedTasks<WarpTask>& out) {
   if (some.empty()) return;
-  add_chunks(cluster, some, at_once, out);
+  add_groups(cluster, some, at_once, out);
   WarpTask nothing = some.front();
   nothing.flags = 0;
-  out.units.resize(out.chunks.back().begin + at_once, nothing);
+  out.tasks.resize(out.groups.back().begin + at_once, nothing);
 }
 
 // Makes the block tasks of a level and their groups.
@@ -44,49 +44,49 @@ class LevelTasks {
 
   const std::vector<BlockMass>& block_masses() const { return block_masses_; }
   // Returns the tasks cluster by cluster.
-  GroupedTasks<BlockTask> chunked() const {
+  GroupedTasks<BlockTask> grouped() const {
     GroupedTasks<BlockTask> all;
     for (const CellCluster& cluster : clusters_.clusters)
-      add_chunks(cluster, units_of(cluster), TaskGroup::kTasks, all);
+      add_groups(cluster, tasks_of(cluster), TaskGroup::kTasks, all);
     return all;
   }
 
   // Returns the tasks for WarpTaskGroups, and in `wide_count` the number of groups of wide tasks.
-  GroupedTasks<WarpTask> chunked_for_warps(std::uint32_t& wide_count) const {
+  GroupedTasks<WarpTask> grouped_for_warps(std::uint32_t& wide_count) const {
     GroupedTasks<WarpTask> all, narrow;
     for (const CellCluster& cluster : clusters_.clusters) {
-      std::vector<WarpTask> units = units_of(cluster);
+      std::vector<WarpTask> tasks = tasks_of(cluster);
       const auto is_wide = [](const BlockTask& u) {
         return u.end - u.begin > WarpTaskGroups::kNarrow;
       };
-      const auto first_narrow = std::stable_partition(units.begin(), units.end(), is_wide);
-      add_whole_chunks(cluster, {units.begin(), first_narrow}, WarpTaskGroups::kWideTasks, all);
-      add_whole_chunks(cluster, {first_narrow, units.end()}, TaskGroup::kTasks, narrow);
+      const auto first_narrow = std::stable_partition(tasks.begin(), tasks.end(), is_wide);
+      add_whole_groups(cluster, {tasks.begin(), first_narrow}, WarpTaskGroups::kWideTasks, all);
+      add_whole_groups(cluster, {first_narrow, tasks.end()}, TaskGroup::kTasks, narrow);
     }
-    wide_count = static_cast<std::uint32_t>(all.chunks.size());
-    const auto before = static_cast<std::uint32_t>(all.units.size());
-    all.units.insert(all.units.end(), narrow.units.begin(), narrow.units.end());
-    for (const TaskGroup& chunk : narrow.chunks)
-      all.chunks.push_back({chunk.ball, before + chunk.begin, before + chunk.end});
+    wide_count = static_cast<std::uint32_t>(all.groups.size());
+    const auto before = static_cast<std::uint32_t>(all.tasks.size());
+    all.tasks.insert(all.tasks.end(), narrow.tasks.begin(), narrow.tasks.end());
+    for (const TaskGroup& group : narrow.groups)
+      all.groups.push_back({group.ball, before + group.begin, before + group.end});
     return all;
   }
 
  private:
-  void add_units(std::uint32_t cell, std::vector<WarpTask>& units) const {
+  void add_tasks(std::uint32_t cell, std::vector<WarpTask>& tasks) const {
     const Vec3 center = tool_.spheres[cell].center - tool_.center_of_mass;
-    const double reach = level_.cell_reach[cell];
+    const double reach = level_.cell_radius[cell];
     const std::uint32_t begin = level_.block_begin[cell], end = level_.block_begin[cell + 1];
     WarpTask task;
     task.balls[BlockTask::of_cell] = {center, reach};
     task.cell_mass = clusters_.masses[cell];
     task.cell = cell;
-    if (is_compact(reach, tool_.reach)) task.flags |= BlockTask::is_compact;
-    const std::size_t head = units.size();
-    if (begin == end) units.push_back(task);
+    if (is_compact(reach, tool_.radius)) task.flags |= BlockTask::is_compact;
+    const std::size_t head = tasks.size();
+    if (begin == end) tasks.push_back(task);
     for (std::uint32_t b = begin; b < end; ++b) {
       const CellBlock& block = level_.blocks[b];
-      units.push_back(task);
-      WarpTask& of_block = units.back();
+      tasks.push_back(task);
+      WarpTask& of_block = tasks.back();
       of_block.balls[BlockTask::of_block] = {widen(block.center), block.radius};
       of_block.block_mass = block_masses_[b];
       of_block.block = b;
@@ -94,14 +94,14 @@ class LevelTasks {
       of_block.end = block.end;
       of_block.flags |= BlockTask::has_block;
     }
-    units[head].flags |= BlockTask::is_head;
+    tasks[head].flags |= BlockTask::is_head;
   }
 
-  std::vector<WarpTask> units_of(const CellCluster& cluster) const {
-    std::vector<WarpTask> units;
+  std::vector<WarpTask> tasks_of(const CellCluster& cluster) const {
+    std::vector<WarpTask> tasks;
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
-      add_units(clusters_.cells[k], units);
-    return units;
+      add_tasks(clusters_.cells[k], tasks);
+    return tasks;
   }
 
   const ToolModel& tool_;
@@ -136,31 +136,31 @@ void DeviceLevel::add_edges(const SphereGraph& graph) {
 // Adds the block tasks in groups, and the masses of blocks and cells.
 void DeviceLevel::add_tasks(const ToolModel& tool, const Level& level) {
   const CellClusters clusters = cluster_cells(tool, level);
-  const LevelTasks units(tool, level, clusters);
+  const LevelTasks level_tasks(tool, level, clusters);
   view_.cell_masses = memory_.copy(clusters.masses);
-  view_.block_masses = memory_.copy(units.block_masses());
-  const GroupedTasks<BlockTask> chunked = units.chunked();
-  view_.units = memory_.copy(chunked.units);
-  view_.chunks = memory_.copy(chunked.chunks);
-  view_.task_group_count = static_cast<std::uint32_t>(chunked.chunks.size());
+  view_.block_masses = memory_.copy(level_tasks.block_masses());
+  const GroupedTasks<BlockTask> grouped = level_tasks.grouped();
+  view_.block_tasks = memory_.copy(grouped.tasks);
+  view_.task_groups = memory_.copy(grouped.groups);
+  view_.task_group_count = static_cast<std::uint32_t>(grouped.groups.size());
   if (level.sphere_count > kSpheresOfWarps) return;
   std::uint32_t wide_count = 0;
-  const GroupedTasks<WarpTask> of_warps = units.chunked_for_warps(wide_count);
-  view_.of_warps = {memory_.copy(of_warps.units), memory_.copy(of_warps.chunks),
-                    static_cast<std::uint32_t>(of_warps.chunks.size()), wide_count};
+  const GroupedTasks<WarpTask> of_warps = level_tasks.grouped_for_warps(wide_count);
+  view_.of_warps = {memory_.copy(of_warps.tasks), memory_.copy(of_warps.groups),
+                    static_cast<std::uint32_t>(of_warps.groups.size()), wide_count};
 }
 
-DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded) {
+DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows) {
   view_.count = level.sphere_count;
   view_.piece_count =
       static_cast<std::uint32_t>(level.samples.size() + level.blocks.size() + level.sphere_count);
   view_.spheres = memory_.copy(tool.spheres.data(), level.sphere_count);
   view_.centers = memory_.copy(centers_of(tool, level));
-  view_.reach = memory_.copy(level.cell_reach);
+  view_.reach = memory_.copy(level.cell_radius);
   view_.block_begin = memory_.copy(level.block_begin);
   view_.blocks = memory_.copy(level.blocks);
   view_.samples = memory_.copy(level.samples);
-  view_.tool_reach = {tool.reach, occluded};
+  view_.tool_radius = {tool.radius, shadows};
   add_edges(level.graph);
   add_tasks(tool, level);
 }

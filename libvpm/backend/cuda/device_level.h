@@ -9,7 +9,7 @@ namespace vpm::cuda {
 
 class DeviceLevel {
  public:
-  DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded);
+  DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows);
   const LevelView& view() const { return view_; }
 
  private:

@@ -48,16 +48,16 @@ class GroupMeasure {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
-    const Subwarp lanes(lanes_of_chunk());
+    const Subwarp lanes(lanes_of_group());
     // Deals neighbours to different warps, since they often take long together.
     const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
     const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
     for (unsigned first = work_.part.part; first < work_.level.task_group_count;
          first += slots * work_.part.parts) {
       const unsigned c = first + slot * work_.part.parts;
-      if (c < work_.level.task_group_count) look_at(c, slot, lanes);
+      if (c < work_.level.task_group_count) classify_group(c, slot, lanes);
       __syncthreads();
-      note_pushed();
+      note_uniform();
       classify_seen(first + slots * work_.part.parts >= work_.level.task_group_count);
       __syncthreads();
       clear_seen();
@@ -77,10 +77,10 @@ class GroupMeasure {
   static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
 
   __device__ void clear_seen() {
-    if (threadIdx.x == 0) shared_.seen_count = shared_.clipped_count = shared_.pushed_count = 0;
+    if (threadIdx.x == 0) shared_.seen_count = shared_.clipped_count = shared_.uniform_count = 0;
   }
   // Returns the lanes per task group. More finish a group sooner, fewer take more groups at once.
-  __device__ unsigned lanes_of_chunk() const {
+  __device__ unsigned lanes_of_group() const {
     unsigned best = 1, least = UINT_MAX;
     for (unsigned lanes = kPlacesAround; lanes > 0; lanes /= 2) {
       const unsigned at_once = blockDim.x / lanes * work_.part.parts;
@@ -92,20 +92,20 @@ class GroupMeasure {
   }
   // Classifies the cluster of one task group with all threads of a slot. Its first thread notes the
   // result.
-  __device__ void look_at(std::uint32_t c, unsigned slot, const Subwarp& lanes) {
-    const TaskGroup& chunk = work_.level.chunks[c];
-    const Vec3 at = work_.to_surface * chunk.ball.center;
-    const auto in_ball = work_.surface.classify_ball(at, chunk.ball.radius);
+  __device__ void classify_group(std::uint32_t c, unsigned slot, const Subwarp& lanes) {
+    const TaskGroup& group = work_.level.task_groups[c];
+    const Vec3 at = work_.to_surface * group.ball.center;
+    const auto in_ball = work_.surface.classify_ball(at, group.ball.radius);
     if (in_ball.side == Side::free) return;
     ClipPlane plane;
-    const ClusterClass seen = classify_cluster(chunk.ball, in_ball, at, lanes, plane);
+    const ClusterClass seen = classify_cluster(group.ball, in_ball, at, lanes, plane);
     if (!lanes.leads() || seen == ClusterClass::free) return;
     if (seen == ClusterClass::uniform) {
-      shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
+      shared_.uniform_groups[atomicAdd(&shared_.uniform_count, 1U)] = c;
       return;
     }
-    shared_.first_units[slot] = chunk.begin;
-    const unsigned count = chunk.end - chunk.begin;
+    shared_.first_tasks[slot] = group.begin;
+    const unsigned count = group.end - group.begin;
     const bool clipped = seen == ClusterClass::cut;
     if (clipped) {  // member by member: nvcc copies a padded struct byte by byte
       PlanarCluster& planar = planar_cluster_of(slot);
@@ -123,7 +123,7 @@ class GroupMeasure {
   template <class BallClass>
   __device__ ClusterClass classify_cluster(const TaskBall& ball, const BallClass& in_ball, Vec3 at,
                                            const Subwarp& lanes, ClipPlane& plane) {
-    const double tool = work_.level.tool_reach.length;
+    const double tool = work_.level.tool_radius.length;
     const ClusterClass found = class_of_cluster(work_.surface, in_ball, at, ball.radius, tool);
     if (found == ClusterClass::by_middle)
       return class_by_middle(work_.surface, work_.surface.sample(at), at, ball.radius, tool);
@@ -137,17 +137,17 @@ class GroupMeasure {
   }
   // Notes the cells of uniform clusters, a thread for each block task. Finding the normals takes
   // long, so the last warps do it while the first ones handle cut clusters.
-  __device__ void note_pushed() {
+  __device__ void note_uniform() {
     const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % TaskGroup::kTasks;
-    for (unsigned k = thread / TaskGroup::kTasks; k < shared_.pushed_count;
+    for (unsigned k = thread / TaskGroup::kTasks; k < shared_.uniform_count;
          k += blockDim.x / TaskGroup::kTasks) {
-      const TaskGroup& chunk = work_.level.chunks[shared_.pushed[k]];
-      const Vec3 at = work_.to_surface * chunk.ball.center;
+      const TaskGroup& group = work_.level.task_groups[shared_.uniform_groups[k]];
+      const Vec3 at = work_.to_surface * group.ball.center;
       const Vec3 normal = transpose(work_.to_surface.rotation) *
                           work_.surface.closest_normal(at, work_.surface.sample(at));
-      if (u >= chunk.end - chunk.begin) continue;
-      const BlockTask& task = work_.level.units[chunk.begin + u];
-      if ((task.flags & BlockTask::is_head) != 0) note_pushed(task, normal);
+      if (u >= group.end - group.begin) continue;
+      const BlockTask& task = work_.level.block_tasks[group.begin + u];
+      if ((task.flags & BlockTask::is_head) != 0) note_uniform(task, normal);
     }
   }
   // Classifies the listed block tasks in rounds, after each of which the lists get room: those of
@@ -177,13 +177,13 @@ class GroupMeasure {
       is_last &= !ends;
     }
   }
-  __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
-    return (units * lanes + 31) / 32;
+  __device__ static unsigned warps_of(unsigned tasks, unsigned lanes) {
+    return (tasks * lanes + 31) / 32;
   }
   // Returns the number of warps that do not handle uniform clusters.
   __device__ unsigned idle_warps() const {
     const unsigned warps = blockDim.x / 32;
-    return warps - min(warps_of(shared_.pushed_count, TaskGroup::kTasks), warps / 2);
+    return warps - min(warps_of(shared_.uniform_count, TaskGroup::kTasks), warps / 2);
   }
   // Returns the lanes per task of a cut cluster, as many as fit into one round.
   __device__ unsigned lanes_of_clipped(unsigned warps) const {
@@ -203,7 +203,7 @@ class GroupMeasure {
   // Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
   __device__ void classify(SeenTask seen, bool active) {
     const Subwarp lanes(kLanes);
-    const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+    const BlockTask& task = work_.level.block_tasks[shared_.first_tasks[seen.slot()] + seen.task()];
     const TaskBall ball = task.balls[min(lanes.lane, BlockTask::kBalls - 1U)];
     const std::uint32_t flags = task.flags;
     const bool head = (flags & BlockTask::is_head) != 0;
@@ -232,7 +232,7 @@ class GroupMeasure {
     if (kFloods) {
       gap = squared_gap(on_surface);
       hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
-                              is_hidden_cell(gap, work_.level.tool_reach.length),
+                              is_hidden_cell(gap, work_.level.tool_radius.length),
                           BlockTask::of_cell);
       const bool behind = lanes.from(is_behind_surface(on_surface), BlockTask::of_cell);
       whole |= side == Side::no_surface && behind;
@@ -249,7 +249,7 @@ class GroupMeasure {
 
   // Classifies one block task of a cut cluster by all lanes of a subwarp.
   __device__ void classify_clipped(SeenTask seen, const Subwarp& lanes) {
-    const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+    const BlockTask& task = work_.level.block_tasks[shared_.first_tasks[seen.slot()] + seen.task()];
     const PlanarCluster& planar = planar_cluster_of(seen.slot());
     const ClipPlane plane = planar.plane;
     const TaskBall cell = task.balls[BlockTask::of_cell];
@@ -310,7 +310,7 @@ class GroupMeasure {
   }
 
   // Notes a cell of a uniform cluster.
-  __device__ void note_pushed(const BlockTask& task, Vec3 normal) {
+  __device__ void note_uniform(const BlockTask& task, Vec3 normal) {
     tasks_.note_behind(task, normal);
     if (!kFloods) return;
     const Vec3 at = work_.to_surface * task.balls[BlockTask::of_cell].center;
@@ -344,7 +344,7 @@ class GroupMeasure {
     if ((task.flags & BlockTask::has_block) == 0) return;
     TangentPlane tangent;
     const BlockClass found = class_of_block(
-        work_.surface, in_ball, at, radius, work_.level.tool_reach, [&] { return on_surface; },
+        work_.surface, in_ball, at, radius, work_.level.tool_radius, [&] { return on_surface; },
         tangent);
     if (found == BlockClass::cut)
       tasks_.add_clipped(task, {tangent, work_.to_surface});

@@ -31,7 +31,7 @@ struct alignas(16) ImageShared {
   Vec3 middle;
   SurfaceSample on_surface, around[kPlacesAround];
   Vec3 normal;  // along which a uniform cluster is pushed
-  OfTask units[TaskGroup::kTasks];
+  OfTask tasks[TaskGroup::kTasks];
 };
 
 // Samples the surface at the four places about a cluster's middle, each by one lane of a warp. The
@@ -61,28 +61,28 @@ class ImageTaskGroup {
  public:
   // Takes the number of `lanes` per block task.
   __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, const TaskBall& cluster,
-                            const WarpTask* units, unsigned lanes, ImageShared& shared,
+                            const WarpTask* tasks, unsigned lanes, ImageShared& shared,
                             ImageSums& sums)
       : work_(work),
         cluster_(cluster),
         lanes_(lanes),
         lane_(threadIdx.x % lanes),
-        unit_(units[threadIdx.x % 32 / lanes]),
-        flags_(unit_.flags),
-        begin_(unit_.begin),
-        end_(unit_.end),
+        task_(tasks[threadIdx.x % 32 / lanes]),
+        flags_(task_.flags),
+        begin_(task_.begin),
+        end_(task_.end),
         shared_(shared),
-        seen_(shared.units[threadIdx.x % 32 / lanes]),
+        seen_(shared.tasks[threadIdx.x % 32 / lanes]),
         sums_(sums) {}
 
   __device__ void measure() {
-    see_ball();
+    classify_balls();
     if (shared_.in_ball.side == Side::free) return;
     Found found;
     const Counts counts = classify();
     measure_pieces(counts, found);
     measure_by_plane(counts, found);
-    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(unit_, found);
+    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(task_, found);
   }
 
  private:
@@ -98,7 +98,7 @@ class ImageTaskGroup {
   // How a block task counts.
   enum class Counts {
     not_at_all,
-    pushed,      // its cell is behind the surface of a planar cluster
+    uniform,     // its cell is behind the surface of a planar cluster
     by_plane,    // a plane cuts its block
     whole_cell,  // its cell is behind the surface
     whole_block,
@@ -108,7 +108,7 @@ class ImageTaskGroup {
   __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
   __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
   __device__ Measure measure_of_cell() const {
-    const TaskBall& cell = unit_.balls[kOfCell];
+    const TaskBall& cell = task_.balls[kOfCell];
     return work_.measure_of({.center = cell.center, .reach = cell.radius});
   }
   // True for all lanes of a task if `value` is true for any of them.
@@ -129,33 +129,33 @@ class ImageTaskGroup {
   }
 
   // Classifies all balls.
-  __device__ void see_ball() {
-    const bool is_of_unit = lane_ < BlockTask::kBalls;
-    const TaskBall ball = is_of_unit ? unit_.balls[lane_] : cluster_;
+  __device__ void classify_balls() {
+    const bool is_of_task = lane_ < BlockTask::kBalls;
+    const TaskBall ball = is_of_task ? task_.balls[lane_] : cluster_;
     radius_ = ball.radius;
     middle_ = work_.to_surface * ball.center;
-    look_ = work_.surface.classify_ball(middle_, radius_);
+    in_ball_ = work_.surface.classify_ball(middle_, radius_);
     __syncwarp();  // all lanes are done with the last group
     if (is_of_cluster()) {
-      shared_.in_ball = look_;
+      shared_.in_ball = in_ball_;
       shared_.middle = middle_;
     }
     if (lane_ == kOfCell) {
-      seen_.cell = look_.side;
+      seen_.cell = in_ball_.side;
       seen_.farthest = middle_.z + radius_;
-      seen_.asks_pixels = work_.surface.may_be_seen_past(look_, seen_.farthest);
-      seen_.pixels = look_.pixels;
+      seen_.asks_pixels = work_.surface.may_be_seen_past(in_ball_, seen_.farthest);
+      seen_.pixels = in_ball_.pixels;
     }
     __syncwarp();
   }
 
   __device__ Counts classify() {
     switch (class_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
-                             work_.level.tool_reach.length)) {
+                             work_.level.tool_radius.length)) {
       case ClusterClass::ambiguous:
         return sees_plane() ? classify_clipped() : classify_alone(Side::ambiguous);
       case ClusterClass::uniform:
-        return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+        return is(BlockTask::is_head) ? Counts::uniform : Counts::not_at_all;
       default:
         return classify_alone(Side::behind);
     }
@@ -164,7 +164,7 @@ class ImageTaskGroup {
   // True if the surface passes through the cluster as one plane, plane_. Samples it in the middles
   // of the cluster and of the blocks together, then at four places about the cluster's middle.
   __device__ bool sees_plane() {
-    const double tool_radius = work_.level.tool_reach.length;
+    const double tool_radius = work_.level.tool_radius.length;
     const bool may_be =
         may_have_plane(work_.surface, shared_.in_ball, cluster_.radius, tool_radius);
     if (is_of_cluster() ? may_be : lane_ == kOfBlock && is(BlockTask::has_block))
@@ -181,7 +181,7 @@ class ImageTaskGroup {
 
   // Classifies a task of a cluster that is cut by plane_.
   __device__ Counts classify_clipped() {
-    const TaskBall& cell = unit_.balls[kOfCell];
+    const TaskBall& cell = task_.balls[kOfCell];
     const PlaneSide side = side_of_plane(plane_.distance(cell.center), cell.radius);
     const bool is_reached = side != PlaneSide::before;
     const bool may_be_free = is_reached && (seen_.cell == Side::free || seen_.asks_pixels);
@@ -189,7 +189,7 @@ class ImageTaskGroup {
       return Counts::not_at_all;
     if (!is_reached) return Counts::not_at_all;
     if (side == PlaneSide::behind)
-      return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+      return is(BlockTask::is_head) ? Counts::uniform : Counts::not_at_all;
     return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
   }
 
@@ -208,7 +208,7 @@ class ImageTaskGroup {
     if (side == Side::ambiguous) {
       side = side_of_cell(true);
       const bool asks_block = side == Side::ambiguous && is(BlockTask::has_block);
-      if (lane_ == kOfBlock && asks_block) see_block();
+      if (lane_ == kOfBlock && asks_block) classify_block();
       __syncwarp();
       if (asks_block) {
         plane_ = seen_.plane;
@@ -243,11 +243,11 @@ class ImageTaskGroup {
   }
 
   // Classifies the block in its lane: the surface may pass through it as one plane.
-  __device__ void see_block() {
+  __device__ void classify_block() {
     TangentPlane tangent;
     seen_.block = class_of_block(
-        work_.surface, look_, middle_, radius_, work_.level.tool_reach, [&] { return on_surface_; },
-        tangent);
+        work_.surface, in_ball_, middle_, radius_, work_.level.tool_radius,
+        [&] { return on_surface_; }, tangent);
     if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
   }
 
@@ -261,7 +261,7 @@ class ImageTaskGroup {
     } else {
       if (counts != Counts::whole_cell && counts != Counts::whole_block) return false;
       if (turn > 0 || lane_ != 0) return false;
-      const BlockMass& mass = counts == Counts::whole_cell ? unit_.cell_mass : unit_.block_mass;
+      const BlockMass& mass = counts == Counts::whole_cell ? task_.cell_mass : task_.block_mass;
       piece = {mass.centroid, 0, mass.weight};
     }
     x = work_.to_surface * piece.at;
@@ -271,7 +271,7 @@ class ImageTaskGroup {
   // Measures pieces one by one, and finds the way out of the middle of a uniform cluster.
   __device__ void measure_pieces(Counts counts, Found& found) {
     const bool finds_way =
-        __any_sync(~0U, counts == Counts::pushed) != 0 && shared_.in_ball.side == Side::behind;
+        __any_sync(~0U, counts == Counts::uniform) != 0 && shared_.in_ball.side == Side::behind;
     const bool adds_up = __any_sync(~0U, counts == Counts::by_samples) != 0;
     for (unsigned turn = 0;; ++turn) {
       ToolPiece piece;
@@ -318,9 +318,9 @@ class ImageTaskGroup {
       if (is_first) {
         sampled = measure.sample_of(piece, x, on_surface);
         is_inside = exists && sampled.is_inside;
-        const bool cells_it = is_inside && is_sample && Measure::shares_direction(piece, sampled);
-        const unsigned sharing = __ballot_sync(~0U, cells_it);
-        if (cells_it) leader = direction_leader(lane, sharing);
+        const bool shares_it = is_inside && is_sample && Measure::shares_direction(piece, sampled);
+        const unsigned sharing = __ballot_sync(~0U, shares_it);
+        if (shares_it) leader = direction_leader(lane, sharing);
         searches = wants = is_inside && !Measure::is_cut(piece, sampled) && leader == lane;
         if (wants) search = FootSearch<double>(work_.surface, x, on_surface, beside);
       } else if (wants) {
@@ -345,14 +345,14 @@ class ImageTaskGroup {
       if (is_cut) measure.add_to_plane(sampled, found);
     } else {
       found.is_cut |= is_cut;
-      work_.add_inside(measure, piece, sampled, normal, unit_.cell, found.sum);
+      work_.add_inside(measure, piece, sampled, normal, task_.cell, found.sum);
     }
   }
 
   // Adds the part of a task behind a plane, in its first lane.
   __device__ void measure_by_plane(Counts counts, Found& found) {
-    const TaskBall& block = unit_.balls[kOfBlock];
-    const PlaneSide side = counts == Counts::pushed ? PlaneSide::behind
+    const TaskBall& block = task_.balls[kOfBlock];
+    const PlaneSide side = counts == Counts::uniform ? PlaneSide::behind
                            : counts != Counts::by_plane
                                ? PlaneSide::before
                                : side_of_plane(plane_.distance(block.center), block.radius);
@@ -364,8 +364,8 @@ class ImageTaskGroup {
       if (sums.is_cut) measure_of_cell().add_to_plane(block.center, plane_, found);
     } else {
       found.is_cut |= sums.is_cut;
-      add_by_plane(side, counts == Counts::pushed ? unit_.cell_mass : unit_.block_mass, sums,
-                   plane_.normal, work_.level.tool_reach, found.sum);
+      add_by_plane(side, counts == Counts::uniform ? task_.cell_mass : task_.block_mass, sums,
+                   plane_.normal, work_.level.tool_radius, found.sum);
     }
   }
 
@@ -392,7 +392,7 @@ class ImageTaskGroup {
   const PoseWork<DepthSurface>& work_;
   const TaskBall& cluster_;
   unsigned lanes_, lane_;
-  const WarpTask& unit_;
+  const WarpTask& task_;
   std::uint32_t flags_, begin_, end_;  // loaded together with the task's balls
   ImageShared& shared_;
   ImageShared::OfTask& seen_;
@@ -400,7 +400,7 @@ class ImageTaskGroup {
 
   Vec3 middle_;  // centre of the ball that this lane classified, surface frame, m
   double radius_ = 0;
-  DepthSurface::BallClass look_;
+  DepthSurface::BallClass in_ball_;
   SurfaceSample on_surface_;  // sample at the block's middle
   ClipPlane plane_;           // set for a task that is cut by a plane or pushed
 };
@@ -424,25 +424,25 @@ class ImageMeasure {
   }
   // Returns the sums of this thread.
   __device__ RawResult run() {
-    measure_chunk<TaskSums>();
+    measure_group<TaskSums>();
     return sums_.found();
   }
   // Notes the planes of cut cells, which run() leaves out since few queries need them.
-  __device__ void note_planes() { measure_chunk<ContactPlane>(); }
+  __device__ void note_planes() { measure_group<ContactPlane>(); }
 
  private:
   // Deals neighbours to different blocks, since they often take long together.
   template <class Found>
-  __device__ void measure_chunk() {
+  __device__ void measure_group() {
     const WarpTaskGroups& all = work_.level.of_warps;
     const unsigned c = threadIdx.x / 32 * work_.part.parts + work_.part.part;
     if (c >= all.count) return;
     const bool is_wide = c < all.wide_count;
     const unsigned at_once = is_wide ? WarpTaskGroups::kWideTasks : TaskGroup::kTasks;
-    const WarpTask* const units = all.units +
+    const WarpTask* const tasks = all.tasks +
                                   (is_wide ? 0 : all.wide_count * WarpTaskGroups::kWideTasks) +
                                   (is_wide ? c : c - all.wide_count) * at_once;
-    ImageTaskGroup<Found>(work_, all.chunks[c].ball, units, 32 / at_once, shared_, sums_).measure();
+    ImageTaskGroup<Found>(work_, all.groups[c].ball, tasks, 32 / at_once, shared_, sums_).measure();
   }
 
   const PoseWork<DepthSurface>& work_;

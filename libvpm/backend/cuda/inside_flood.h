@@ -141,8 +141,8 @@ __host__ __device__ inline bool is_small(const LevelView& level) {
 struct FloodShared {
   std::uint32_t words[kFloodCells];
   Edge edges[kFloodEdges];  // from the front: passages, between two cells that the flood may pass
-  unsigned flood_states, entries;  // numbers of passages, and of entries, by which it may enter and
-                                   // which lie at the back
+  unsigned passages, entries;  // numbers of passages, and of entries, by which it may enter and
+                               // which lie at the back
 };
 // Holds what a block needs: its own flood, or the list of noted cells.
 union FloodBlock {
@@ -209,7 +209,7 @@ class Flood {
   static constexpr unsigned kEdges = 4;  // edges per thread at once: their reads wait together
 
   __device__ void bring_to_shared() {
-    if (threadIdx.x == 0) shared_.flood_states = shared_.entries = 0;
+    if (threadIdx.x == 0) shared_.passages = shared_.entries = 0;
     for (std::uint32_t i = threadIdx.x; i < level_.count; i += blockDim.x)
       words_[i] = notes_.words[i];
     __syncthreads();
@@ -248,7 +248,7 @@ class Flood {
   // Calls join(k, i, j) for edges between cells that the flood may pass, enter(k, cut, i) for edges
   // by which it may enter.
   template <class Join, class Enter>
-  __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter) {
+  __device__ static void visit_edges(const Edges& together, const Join& join, const Enter& enter) {
 #pragma unroll
     for (unsigned k = 0; k < kEdges; ++k) {
       const std::uint32_t i = together.edges[k].larger, j = together.edges[k].smaller;
@@ -267,7 +267,7 @@ class Flood {
   __device__ void join_cells() {
     const auto join_ends = [&](const Edges& together) {
       std::uint32_t one[kEdges] = {}, other[kEdges] = {};
-      look_at(
+      visit_edges(
           together,
           [&](unsigned k, std::uint32_t i, std::uint32_t j) { one[k] = i + 1, other[k] = j + 1; },
           [&](unsigned k, std::uint32_t cut, std::uint32_t i) {
@@ -301,17 +301,17 @@ class Flood {
   // until none changes anything.
   __device__ void flood_in_shared() {
     for_edges([&](const Edges& together) {
-      look_at(
+      visit_edges(
           together,
           [&](unsigned, std::uint32_t i, std::uint32_t j) {
-            shared_.edges[atomicAdd(&shared_.flood_states, 1U)] = {i, j};
+            shared_.edges[atomicAdd(&shared_.passages, 1U)] = {i, j};
           },
           [&](unsigned, std::uint32_t cut, std::uint32_t i) {
             shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
           });
     });
     __syncthreads();
-    const unsigned entries = shared_.entries, flood_states = shared_.flood_states;
+    const unsigned entries = shared_.entries, passages = shared_.passages;
     for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
       const Edge entry = shared_.edges[kFloodEdges - 1 - k];
       if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], cell_bit::reached);
@@ -320,20 +320,20 @@ class Flood {
     while (__syncthreads_or(changes) != 0) {
       constexpr unsigned kMost = kFloodEdges / kThreads;
       static_assert(kMost <= 32);
-      unsigned clipped = 0;  // one bit per edge of this thread
+      unsigned changed_edges = 0;  // one bit per edge of this thread
 #pragma unroll 4
       for (unsigned n = 0; n < kMost; ++n) {
         const unsigned k = threadIdx.x + n * blockDim.x;
-        if (k >= flood_states) break;
+        if (k >= passages) break;
         const Edge edge = shared_.edges[k];
-        clipped |=
+        changed_edges |=
             ((words_[edge.larger] ^ words_[edge.smaller]) & cell_bit::reached) != 0 ? 1U << n : 0U;
       }
       __syncthreads();
-      changes = clipped != 0;
-      for (; clipped != 0; clipped &= clipped - 1) {
+      changes = changed_edges != 0;
+      for (; changed_edges != 0; changed_edges &= changed_edges - 1) {
         const Edge edge =
-            shared_.edges[threadIdx.x + (__ffs(static_cast<int>(clipped)) - 1) * blockDim.x];
+            shared_.edges[threadIdx.x + (__ffs(static_cast<int>(changed_edges)) - 1) * blockDim.x];
         atomicOr(&words_[edge.larger], cell_bit::reached);
         atomicOr(&words_[edge.smaller], cell_bit::reached);
       }

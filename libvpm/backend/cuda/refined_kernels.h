@@ -57,7 +57,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
   space.parents = first.parents + cells + team;
   space.cut = first.cut + cells;
   space.far = first.far + team * room.pieces;
-  space.flats = first.flats + team * 2 * TaskLists::kTasks;
+  space.clipped_blocks = first.clipped_blocks + team * 2 * TaskLists::kTasks;
   space.planar_clusters = first.planar_clusters + team * kBatchThreads;
   return space;
 }
@@ -263,7 +263,7 @@ class RefinedMemory {
                memory_.room<std::uint32_t>((room.cells + 1) * teams),
                memory_.room<std::uint32_t>(room.cells * teams),
                memory_.room<FarPiece>(room.pieces * teams),
-               memory_.room<FlatBlock>(2 * TaskLists::kTasks * blocks),
+               memory_.room<ClippedBlock>(2 * TaskLists::kTasks * blocks),
                memory_.room<PlanarCluster>(threads * blocks)} {}
 
   const RefinedSpace& space() const { return space_; }
@@ -274,7 +274,7 @@ class RefinedMemory {
         2 * (sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
     return room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
-           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(PlanarCluster);
+           2 * TaskLists::kTasks * sizeof(ClippedBlock) + kBatchThreads * sizeof(PlanarCluster);
   }
 
  private:

@@ -61,7 +61,7 @@ class RefinedOnDevice : public DeviceMeasure {
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
       : device_(device),
-        level_(tool, level, options.occluded),
+        level_(tool, level, options.shadows),
         kernels_(BodyKinds::of_surfaces<PoseKernel>(level_.view())),
         memory_(TeamRoom(level_.view()), 1, most_blocks(), kThreads),
         totals_(1),

@@ -21,18 +21,23 @@ struct Task {
 
 // Lists of tasks by how warps measure them. Wide tasks have more than kNarrow samples.
 struct TaskLists {
-  enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
-  static constexpr unsigned kTasks = 352;                               // room in a list
-  static constexpr unsigned kNarrow = 8, kWide = 32, kFlat = kSumRows;  // lanes
+  enum List { samples_wide, samples_narrow, clipped_wide, pieces, clipped_narrow, kLists };
+  static constexpr unsigned kTasks = 352;                                  // room in a list
+  static constexpr unsigned kNarrow = 8, kWide = 32, kClipped = kSumRows;  // lanes
 
   Task tasks[kLists][kTasks];
   unsigned counts[kLists];
   unsigned next_bundle;
 
   __device__ static unsigned width(unsigned list) {
-    return list == pieces ? 1 : list == samples_wide ? kWide : list == flat_wide ? kFlat : kNarrow;
+    return list == pieces         ? 1
+           : list == samples_wide ? kWide
+           : list == clipped_wide ? kClipped
+                                  : kNarrow;
   }
-  __device__ static bool is_flat(unsigned list) { return list == flat_wide || list == flat_narrow; }
+  __device__ static bool is_clipped(unsigned list) {
+    return list == clipped_wide || list == clipped_narrow;
+  }
   __device__ unsigned add(unsigned list, const Task& task) {
     const unsigned slot = atomicAdd(&counts[list], 1U);
     tasks[list][slot] = task;
@@ -66,9 +71,9 @@ struct MeasureShared {
   SeenTask seen[kSeen];  // from the front those of clusters that are not planar, from the end those
                          // of cut ones
   unsigned seen_count, clipped_count;
-  std::uint32_t pushed[kMeasureThreads];  // task groups of uniform clusters
-  unsigned pushed_count;
-  std::uint32_t first_units[kMeasureThreads];  // first block task of each slot's group
+  std::uint32_t uniform_groups[kMeasureThreads];  // task groups of uniform clusters
+  unsigned uniform_count;
+  std::uint32_t first_tasks[kMeasureThreads];  // first block task of each slot's group
   TaskLists lists;
 };
 
@@ -132,16 +137,16 @@ class TaskMeasure {
                     block_task.end - block_task.begin};
     if (side == PlaneSide::cut) {
       const unsigned list =
-          task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
+          task.count <= TaskLists::kNarrow ? TaskLists::clipped_narrow : TaskLists::clipped_wide;
       // Assigns member by member, since nvcc would store the whole byte by byte.
-      FlatBlock& block = flat(list, lists_.add(list, task));
+      ClippedBlock& block = clipped_block(list, lists_.add(list, task));
       block.plane = plane;
       block.center = ball.center;
       return;
     }
     CellResult result;
     if (side == PlaneSide::behind)
-      add_whole(work_.level.tool_reach, work_.level.block_masses[block_task.block], plane.normal,
+      add_whole(work_.level.tool_radius, work_.level.block_masses[block_task.block], plane.normal,
                 result.sum);
     note_task(task, result);
   }
@@ -149,7 +154,7 @@ class TaskMeasure {
   // Adds a cell wholly behind its cluster's surface, pushed along `normal`.
   __device__ void note_behind(const BlockTask& block_task, Vec3 normal) {
     ToolSum sum;
-    add_whole(work_.level.tool_reach, work_.level.cell_masses[block_task.cell], normal, sum);
+    add_whole(work_.level.tool_radius, work_.level.cell_masses[block_task.cell], normal, sum);
     if (kFloods) {
       work_.notes.sums[block_task.cell] = sum;
     } else {
@@ -164,14 +169,14 @@ class TaskMeasure {
   static_assert(TaskLists::kNarrow % kNeighborSamples == 0 &&
                 TaskLists::kWide % kNeighborSamples == 0);
 
-  __device__ FlatBlock& flat(unsigned list, unsigned slot) const {
-    const unsigned row = 2 * work_.part.part + (list == TaskLists::flat_wide);
-    return work_.space.flats[row * TaskLists::kTasks + slot];
+  __device__ ClippedBlock& clipped_block(unsigned list, unsigned slot) const {
+    const unsigned row = 2 * work_.part.part + (list == TaskLists::clipped_wide);
+    return work_.space.clipped_blocks[row * TaskLists::kTasks + slot];
   }
 
   __device__ void measure(const Subwarp& subwarp, unsigned list, unsigned slot, const Task& task) {
-    const CellResult result = TaskLists::is_flat(list)
-                                  ? measure_flat(subwarp, flat(list, slot), task)
+    const CellResult result = TaskLists::is_clipped(list)
+                                  ? measure_clipped(subwarp, clipped_block(list, slot), task)
                                   : measure_pieces(subwarp, task);
     if (subwarp.leads()) note_task(task, result);
   }
@@ -194,10 +199,10 @@ class TaskMeasure {
     const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
     const typename Measure::PieceSample sampled = measure.sample_piece(piece);
     const bool inside = exists && sampled.is_inside;
-    const bool cells_it =
+    const bool shares_it =
         exists && task.form == Task::samples && Measure::shares_direction(piece, sampled);
     const unsigned first =
-        Surface::kSearchesFoot ? first_neighbor(subwarp, cells_it) : subwarp.lane;
+        Surface::kSearchesFoot ? first_neighbor(subwarp, shares_it) : subwarp.lane;
     Vec3 normal;
     if (inside && !Measure::is_cut(piece, sampled) && first == subwarp.lane)
       normal = measure.closest_normal(sampled);
@@ -208,17 +213,17 @@ class TaskMeasure {
   }
 
   // Returns the first lane that shares a direction with this one; itself if it shares none.
-  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool cells_it) {
-    const unsigned sharing = subwarp.which(cells_it);
-    return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
+  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool shares_it) {
+    const unsigned sharing = subwarp.which(shares_it);
+    return shares_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
   }
 
   // Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before
   // the last one is added. Returns the result to the first lane.
-  __device__ CellResult measure_flat(const Subwarp& subwarp, const FlatBlock& flat,
-                                     const Task& task) {
-    const ClipPlane plane = flat.plane;
-    const Vec3 center = flat.center, cell = work_.level.centers[task.cell];
+  __device__ CellResult measure_clipped(const Subwarp& subwarp, const ClippedBlock& clipped,
+                                        const Task& task) {
+    const ClipPlane plane = clipped.plane;
+    const Vec3 center = clipped.center, cell = work_.level.centers[task.cell];
     const double reach = work_.level.reach[task.cell];
     const CellSample* const samples = work_.level.samples + task.begin;
     CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
@@ -237,7 +242,7 @@ class TaskMeasure {
       if (row.is_cut)
         work_.measure_of({.center = cell, .reach = reach})
             .add_to_plane(center, plane, result.plane);
-      add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_reach, result.sum);
+      add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_radius, result.sum);
     }
     return result;
   }

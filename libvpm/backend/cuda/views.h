@@ -59,8 +59,8 @@ struct WarpTaskGroups {
   static constexpr unsigned kWideTasks = 2;
   static constexpr std::uint32_t kNarrow = 8;
 
-  const WarpTask* units = nullptr;
-  const TaskGroup* chunks = nullptr;
+  const WarpTask* tasks = nullptr;
+  const TaskGroup* groups = nullptr;
   std::uint32_t count = 0,
                 wide_count = 0;  // groups of wide tasks, which come first; 0 for a large level
 };
@@ -82,12 +82,12 @@ struct LevelView {
   const BlockMass* block_masses = nullptr;
   const BlockMass* cell_masses = nullptr;
   const CellSample* samples = nullptr;
-  const BlockTask* units = nullptr;
-  const TaskGroup* chunks = nullptr;
+  const BlockTask* block_tasks = nullptr;
+  const TaskGroup* task_groups = nullptr;
   WarpTaskGroups of_warps;
   const Edge* edges = nullptr;                // ordered by their larger index
   const std::uint32_t* edge_begin = nullptr;  // edges by larger index; count + 1 entries
-  ToolReach tool_reach;
+  ToolRadius tool_radius;
 
   VPM_HD CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],

@@ -24,7 +24,7 @@ VPM_HD constexpr std::uint32_t value_of(NumberedWord word) {
 VPM_HD inline void put(NumberedWord word, NumberedWord& place) {
   *static_cast<volatile NumberedWord*>(&place) = word;
 }
-VPM_HD inline NumberedWord look_at(const NumberedWord& place) {
+VPM_HD inline NumberedWord poll(const NumberedWord& place) {
   return *static_cast<const volatile NumberedWord*>(&place);
 }
 

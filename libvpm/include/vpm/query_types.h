@@ -14,10 +14,10 @@ namespace vpm {
 enum class Measure { refined, paper };
 
 // Says which places count that a depth image does not show, since something hides them.
-// within_reach: those up to the tool's bounding radius behind what is seen, and those further
+// near: those up to the tool radius behind what is seen, and those further
 // behind that the plane of the surface that cuts the tool supports. solid: all, as in a count of
 // what is behind the image.
-enum class OccludedSpace { within_reach, solid };
+enum class Shadows { near, solid };
 
 struct QueryOptions {
   Measure measure = Measure::refined;
@@ -26,8 +26,8 @@ struct QueryOptions {
   // The poses are those of one motion: a tool that passes wholly behind the surface stays inside
   // until it comes out. Refined measure on the CPU only.
   bool coherent = false;
-  OccludedSpace occluded = OccludedSpace::within_reach;  // solid: refined measure, in depth images
-  double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  Shadows shadows = Shadows::near;  // solid: refined measure, in depth images
+  double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 // Question of a batch: a pose (tool to world coordinates) of one of the query's tools.

@@ -40,8 +40,9 @@ class VPM_API Tool {
   double volume() const;
   // Returns the centre of mass of the homogeneous solid, about which torques are measured.
   Vec3 center_of_mass() const;
-  // Returns the largest distance of a point of the solid from the centre of mass, m.
-  double bounding_radius() const;
+  // Returns the tool radius: the largest distance of a point of the solid from the centre of mass,
+  // m.
+  double radius() const;
   // Returns the radius of gyration, m, of a ball with the solid's mean moment of inertia, for
   // CouplingParameters.
   double gyration() const;

@@ -101,8 +101,8 @@ void CloudSlot::make(cudaStream_t stream) {
 }
 
 bool CloudSlot::is_answered() const {
-  return number_of(look_at(answer_.host()->points)) == sequence_ &&
-         number_of(look_at(answer_.host()->doubtful)) == sequence_;
+  return number_of(poll(answer_.host()->points)) == sequence_ &&
+         number_of(poll(answer_.host()->doubtful)) == sequence_;
 }
 
 void CloudSlot::wait() const {
@@ -113,11 +113,11 @@ void CloudSlot::wait() const {
 
 bool CloudSlot::is_sound() const {
   wait();
-  return value_of(look_at(answer_.host()->doubtful)) == 0;
+  return value_of(poll(answer_.host()->doubtful)) == 0;
 }
 
 std::size_t CloudSlot::points() const {
-  if (is_plain_ && is_sound()) return value_of(look_at(answer_.host()->points));
+  if (is_plain_ && is_sound()) return value_of(poll(answer_.host()->points));
   return prepared().positions().size();
 }
 

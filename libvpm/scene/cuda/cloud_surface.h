@@ -113,7 +113,7 @@ class DenoiseWork {
     return {denoised_inverse_depth(seen(0, 0), window_at(x, y)),
             {sum.x * scale, sum.y * scale, sum.z * scale}};
   }
-  __device__ Pixel off(int x, int y) const {
+  __device__ Pixel as_measured(int x, int y) const {
     const SeenPixel<float> pixel = seen_at(x, y);
     return {pixel.inverse, {pixel.x, pixel.y, pixel.z}};
   }
@@ -230,7 +230,7 @@ __device__ inline void denoise_tile(const DenoiseWork& work, Denoising points) {
     __syncthreads();
     work.make_pixels([&](int x, int y) { return work.denoised(x, y); });
   } else {
-    work.make_pixels([&](int x, int y) { return work.off(x, y); });
+    work.make_pixels([&](int x, int y) { return work.as_measured(x, y); });
   }
   __syncthreads();
   work.write_tiles();

@@ -13,7 +13,7 @@ namespace vpm {
 struct DepthSurface : DepthSampler {
   static constexpr bool kSearchesFoot = true;
   // A ray that has passed the surface is inside as far as anybody knows, so places behind it count
-  // up to the tool's radius without a flood.
+  // up to the tool radius without a flood.
   static constexpr bool kTellsInside = true;
   // Samples about the middle of a ball lie at this part of its radius, where a paraboloid is as
   // high as its mean over a box in the ball.
@@ -173,9 +173,9 @@ struct DepthSurface : DepthSampler {
   // Finds the mean plane of the surface across a ball that may_be_flat(), from samples at its
   // middle and at four places around it. Returns false if they do not belong to one smooth surface,
   // or the plane does not predict the range of the ball's pixels.
-  template <class ReadAll>
+  template <class SampleAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
-                         const ReadAll& sample_all, TangentPlane& plane) const {
+                         const SampleAll& sample_all, TangentPlane& plane) const {
     const SurfaceSample middle = sample_all.middle(*this, center);
     if (!middle.known) return false;
     const Vec3 n = middle.normal, below = center - middle.distance * n;

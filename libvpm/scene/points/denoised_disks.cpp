@@ -216,10 +216,10 @@ constexpr double kExplained = 0.85;  // part of the points about a crease that m
 
 // Denoises disks whose normals were estimated across a crease. Disks on no pair of planes that
 // smooth disks show stay as they are, since they may be small and no crease.
-class CreaseSettling {
+class CreaseDenoising {
  public:
-  CreaseSettling(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
-                 DenoisedDisks& result)
+  CreaseDenoising(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
+                  DenoisedDisks& result)
       : windows_(windows), kinds_(kinds), result_(result) {
     smooth_.reserve(kinds.size());
     for (const DiskKind kind : kinds) smooth_.push_back(is_smooth(kind) ? 1.0F : 0.0F);
@@ -365,7 +365,7 @@ class CreaseSettling {
 
 }  // namespace
 
-DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii) {
+DenoisedDisks as_measured(const DiskSurface& measured, std::vector<float> radii) {
   const std::uint32_t count = measured.feet.count;
   return {{measured.feet.points, measured.feet.points + count},
           {measured.normals, measured.normals + count},
@@ -374,12 +374,12 @@ DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii) {
           {}};
 }
 
-DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii) {
+DenoisedDisks denoised(const DiskSurface& measured, std::vector<float> radii) {
   const std::vector<float> as_given = radii;
-  DenoisedDisks result = off(measured, std::move(radii));
+  DenoisedDisks result = as_measured(measured, std::move(radii));
   const DiskWindows windows(measured, as_given);
   const std::vector<DiskKind> kinds = Smoothing(windows, result).run();
-  CreaseSettling(windows, kinds, result).run();
+  CreaseDenoising(windows, kinds, result).run();
   return result;
 }
 

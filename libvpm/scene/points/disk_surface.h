@@ -65,9 +65,9 @@ struct DiskSurface {
   // Samples the nearest disk, which stands for the surface. Only in an empty cloud nothing is
   // known.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
-    return read_point(x, feet.nearest(x, HUGE_VAL, near));
+    return sample_of_point(x, feet.nearest(x, HUGE_VAL, near));
   }
-  VPM_HD SurfaceSample read_point(Vec3 x, std::uint32_t i) const {
+  VPM_HD SurfaceSample sample_of_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
     const TangentPlane own = plane_of(i);
     const double distance = own.distance(x);
@@ -160,8 +160,8 @@ struct DiskSurface {
                       TangentPlane& plane) const {
     return mean_plane(in_ball, tolerance, plane);
   }
-  template <class ReadAll>
-  VPM_HD bool mean_plane(const BallClass& in_ball, Vec3, double, double tolerance, const ReadAll&,
+  template <class SampleAll>
+  VPM_HD bool mean_plane(const BallClass& in_ball, Vec3, double, double tolerance, const SampleAll&,
                          TangentPlane& plane) const {
     return mean_plane(in_ball, tolerance, plane);
   }
@@ -169,7 +169,7 @@ struct DiskSurface {
   // not show one smooth surface: one is of another wall or lies off the plane by more than
   // kOffPlane of `tolerance`, or those on one side of the middle are too few or face elsewhere.
   VPM_HD bool mean_plane(const BallClass& in_ball, double tolerance, TangentPlane& plane) const {
-    const SurfaceSample nearest = read_point(in_ball.center, in_ball.point);
+    const SurfaceSample nearest = sample_of_point(in_ball.center, in_ball.point);
     const double height = nearest.distance, near = kMiddle * in_ball.radius;
     const Vec3 middle = in_ball.center - height * nearest.normal;
     Vec3 normal_sum, place_sum;
@@ -329,7 +329,7 @@ class DiskSurface::AroundBall {
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near) const {
     if (points_.is_empty() || !(squared_norm(x - center_) <= radius_ * radius_))
       return surface_.sample(x, near);
-    return surface_.read_point(x, points_.nearest(x));
+    return surface_.sample_of_point(x, points_.nearest(x));
   }
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const {
@@ -400,9 +400,9 @@ struct DenoisedDisks {
 
 // Returns the denoised disks of `measured`, which holds the points as measured, in a tree; `radii`
 // are their sampling radii, m. The result does not depend on the number of threads.
-DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii);
+DenoisedDisks denoised(const DiskSurface& measured, std::vector<float> radii);
 
 // Returns the measured points themselves as disks.
-DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii);
+DenoisedDisks as_measured(const DiskSurface& measured, std::vector<float> radii);
 
 }  // namespace vpm

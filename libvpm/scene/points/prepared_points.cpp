@@ -10,10 +10,10 @@ PreparedPoints::PreparedPoints(const Cloud& cloud, Denoising points) {
   boxes_ = boxes_of(positions());
   const DiskSurface measured{point_tree(), normals().data()};
   if (points == Denoising::on) {
-    disks_ = settle(measured, std::move(radii));
+    disks_ = denoised(measured, std::move(radii));
     foot_boxes_ = boxes_of(disks_.feet);
   } else {
-    disks_ = off(measured, std::move(radii));
+    disks_ = as_measured(measured, std::move(radii));
   }
   largest_radii_ = largest_in_nodes(disks_.radii);
   cones_ = cones_of(surface());

@@ -1,4 +1,4 @@
-#include "tools/common/tool.h"
+#include "tools/common/program.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -104,7 +104,8 @@ std::string check_device(const std::string& text) {
 
 }  // namespace
 
-Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), app_(purpose, name) {
+Program::Program(const std::string& name, const std::string& purpose)
+    : name_(name), app_(purpose, name) {
   app_.set_version_flag("--version", name + " " VPM_VERSION);
   app_.config_formatter(std::make_shared<JsonConfig>());
   app_.set_config("--config", "", "Read options from a JSON file; the command line wins")
@@ -128,7 +129,7 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
 }
 
 // Reads the command line. False if it asked for the configuration, which is printed then.
-bool Tool::parse(int argc, char** argv) {
+bool Program::parse(int argc, char** argv) {
   // Lets --dump-config pass without required options: inputs may not be known yet.
   if (is_asked(argc, argv, "--dump-config")) {
     for (CLI::Option* option : app_.get_options()) option->required(false);
@@ -150,7 +151,7 @@ bool Tool::parse(int argc, char** argv) {
   return true;
 }
 
-int Tool::run(int argc, char** argv, const std::function<void()>& job) {
+int Program::run(int argc, char** argv, const std::function<void()>& job) {
   end_of_early_failures();
   if (!on_devices_)
     app_.get_option("--device")->description("auto or cpu; " + name_ + " computes on the CPU only");
@@ -190,14 +191,14 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
 }
 
 // Returns the file of --config, as it was given.
-std::string Tool::config_name() const {
+std::string Program::config_name() const {
   const CLI::Option* option = app_.get_config_ptr();
   const std::string name = option->results().empty() ? "" : option->results().back();
   return name == "-" || name == "/dev/stdin" ? "standard input" : name;
 }
 
 // Refuses --grow=1e999, of which CLI11 makes whatever it can.
-void Tool::refuse_values_of_flags(int argc, char** argv) const {
+void Program::refuse_values_of_flags(int argc, char** argv) const {
   for (int k = 1; k < argc && std::string_view(argv[k]) != "--"; ++k) {
     const std::string argument = argv[k];
     const std::string name = argument.substr(0, argument.find('='));
@@ -210,7 +211,7 @@ void Tool::refuse_values_of_flags(int argc, char** argv) const {
 
 // Refuses empty values, which come of unset variables in scripts, and values other than true and
 // false that a configuration gives to a flag.
-void Tool::refuse_senseless_values() const {
+void Program::refuse_senseless_values() const {
   for (const CLI::Option* option : app_.get_options()) {
     const std::vector<std::string>& values = option->results();
     if (option->get_expected_max() > 0 &&
@@ -228,29 +229,29 @@ void Tool::refuse_senseless_values() const {
   }
 }
 
-std::string Tool::in_words_of_options(const std::string& text) const {
+std::string Program::in_words_of_options(const std::string& text) const {
   return in_words_of_tools(
       text, [&](const std::string& option) { return app_.get_option_no_throw(option) != nullptr; });
 }
 
-void Tool::print(const char* kind, const std::string& text) const {
+void Program::print(const char* kind, const std::string& text) const {
   std::cerr << name_ << ": " << kind << printable(in_words_of_options(text), kLongestMessage)
             << '\n';
 }
 
-void Tool::note(const std::string& text) const {
+void Program::note(const std::string& text) const {
   if (!common_.quiet) print("note: ", text);
 }
 
-void Tool::warn(const std::string& text) const {
+void Program::warn(const std::string& text) const {
   print("warning: ", text);
 }
 
-void Tool::detail(const std::string& text) const {
+void Program::detail(const std::string& text) const {
   if (common_.verbose && !common_.quiet) print("", text);
 }
 
-nlohmann::json Tool::parameters() const {
+nlohmann::json Program::parameters() const {
   nlohmann::json all = nlohmann::json::parse(app_.config_to_str(true, false));
   for (const CLI::Option* option : app_.get_options()) {
     if (option->get_positional()) all.erase(config_key(*option));

@@ -22,10 +22,10 @@ struct CommonOptions {
   bool force = false;
 };
 
-class Tool {
+class Program {
  public:
   // Adds the common options. `name` is the executable's name, `purpose` the first line of its help.
-  Tool(const std::string& name, const std::string& purpose);
+  Program(const std::string& name, const std::string& purpose);
 
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
