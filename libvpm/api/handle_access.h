@@ -2,14 +2,15 @@
 // hold. Programs cannot do either.
 #pragma once
 
+#include <vpm/scene.h>
+#include <vpm/solid.h>
+#include <vpm/tool.h>
+
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "libvpm/core/handle.h"
-#include "libvpm/include/vpm/scene.h"
-#include "libvpm/include/vpm/solid.h"
-#include "libvpm/include/vpm/tool.h"
 
 namespace vpm {
 

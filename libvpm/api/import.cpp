@@ -1,4 +1,5 @@
-#include "libvpm/include/vpm/import.h"
+#include <vpm/import.h>
+#include <vpm/version.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,7 +8,6 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/include/vpm/version.h"
 
 namespace vpm {
 namespace {

@@ -1,4 +1,4 @@
-#include "libvpm/include/vpm/level_query.h"
+#include <vpm/level_query.h>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/query/level_tool_query.h"

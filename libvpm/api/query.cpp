@@ -1,4 +1,4 @@
-#include "libvpm/include/vpm/query.h"
+#include <vpm/query.h>
 
 #include <deque>
 

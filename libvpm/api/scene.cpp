@@ -1,11 +1,11 @@
-#include "libvpm/include/vpm/scene.h"
+#include <vpm/depth_stream.h>
+#include <vpm/scene.h>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
-#include "libvpm/include/vpm/depth_stream.h"
 #include "libvpm/scene/any_body.h"
 #include "libvpm/scene/depth_frames.h"
 
@@ -69,7 +69,8 @@ Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
 Scene::Scene(std::vector<Body> bodies) {
   if (bodies.empty()) throw Error(ErrorKind::invalid_argument, "a scene needs a body");
   std::vector<AnyBody> list;
-  for (const Body& body : bodies) list.push_back(HandleAccess::held(body));  // throws if it was moved from
+  for (const Body& body : bodies)
+    list.push_back(HandleAccess::held(body));  // throws if it was moved from
   bodies_ = std::make_shared<const std::vector<Body>>(std::move(bodies));
   list_ = std::make_shared<const std::vector<AnyBody>>(std::move(list));
 }

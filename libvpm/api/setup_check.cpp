@@ -1,4 +1,4 @@
-#include "libvpm/include/vpm/setup_check.h"
+#include <vpm/setup_check.h>
 
 #include <optional>
 #include <string>

@@ -1,11 +1,11 @@
-#include "libvpm/include/vpm/solid.h"
+#include <vpm/solid.h>
+#include <vpm/version.h>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing.h"

@@ -1,4 +1,4 @@
-#include "libvpm/include/vpm/tool.h"
+#include <vpm/tool.h>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/haptics/virtual_coupling.h"

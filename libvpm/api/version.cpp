@@ -1,4 +1,4 @@
-#include "libvpm/include/vpm/version.h"
+#include <vpm/version.h>
 
 namespace vpm {
 

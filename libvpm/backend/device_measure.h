@@ -1,11 +1,12 @@
 // Measures on CUDA devices, with the bits of RefinedMeasure.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/any_body.h"

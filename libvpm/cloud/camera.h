@@ -1,10 +1,11 @@
 // Arithmetic of pinhole cameras (vpm/camera.h), for host and device.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include <cmath>
 
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/camera.h"
 
 namespace vpm {
 

@@ -1,11 +1,12 @@
 // Names of the axes that other programs give cameras, and turns between them.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include <optional>
 #include <string_view>
 
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/camera.h"
 
 namespace vpm {
 

@@ -2,10 +2,10 @@
 // terminal.
 #pragma once
 
+#include <vpm/error.h>
+
 #include <cstddef>
 #include <string>
-
-#include "libvpm/include/vpm/error.h"
 
 namespace vpm {
 

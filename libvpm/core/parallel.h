@@ -2,14 +2,14 @@
 // depend on the number of threads.
 #pragma once
 
+#include <vpm/device.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>
-
-#include "libvpm/include/vpm/device.h"
 
 namespace vpm {
 

@@ -1,11 +1,12 @@
 // Three-vectors. Vec3 (double) is for computing; Vec3f (float) is for storage in files and clouds.
 #pragma once
 
+#include <vpm/pose.h>
+
 #include <cmath>
 
 #include "libvpm/core/division.h"
 #include "libvpm/core/host_device.h"
-#include "libvpm/include/vpm/pose.h"
 
 namespace vpm {
 

@@ -1,9 +1,9 @@
 // Declares what the library itself asks of devices, beside vpm/device.h.
 #pragma once
 
-#include <string>
+#include <vpm/device.h>
 
-#include "libvpm/include/vpm/device.h"
+#include <string>
 
 namespace vpm {
 

@@ -2,8 +2,9 @@
 // inertia.
 #pragma once
 
+#include <vpm/virtual_coupling.h>
+
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/virtual_coupling.h"
 #include "libvpm/model/tool_model.h"
 
 namespace vpm {

@@ -1,7 +1,7 @@
 // Joins what several readers say about a file.
 #pragma once
 
-#include "libvpm/include/vpm/remark.h"
+#include <vpm/remark.h>
 
 namespace vpm {
 

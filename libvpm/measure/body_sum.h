@@ -1,11 +1,12 @@
 // Adds up what the bodies of a scene give for one pose of the tool.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <cstdint>
 #include <optional>
 
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/measure/tool_piece.h"
 #include "libvpm/model/tool_model.h"
 

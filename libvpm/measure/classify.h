@@ -3,7 +3,8 @@
 // choose only which thread asks, and in which order.
 #pragma once
 
-#include "libvpm/include/vpm/query_types.h"
+#include <vpm/query_types.h>
+
 #include "libvpm/measure/flood_rules.h"
 #include "libvpm/scene/body.h"
 

@@ -2,13 +2,14 @@
 // the rest by name and place.
 #pragma once
 
+#include <vpm/solid.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "libvpm/include/vpm/solid.h"
 #include "libvpm/mesh/holes.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/outer_surface.h"

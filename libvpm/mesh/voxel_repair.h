@@ -6,7 +6,8 @@
 // given width cannot reach is inside, however triangles face.
 #pragma once
 
-#include "libvpm/include/vpm/solid.h"
+#include <vpm/solid.h>
+
 #include "libvpm/model/solid.h"
 
 namespace vpm {

@@ -2,6 +2,8 @@
 // runs queries of one tool at it. Programs see vpm/level_query.h.
 #pragma once
 
+#include <vpm/level_query.h>
+
 #include <array>
 #include <cstddef>
 #include <deque>
@@ -9,7 +11,6 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/include/vpm/level_query.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/scene_scale.h"
 #include "libvpm/query/tool_query.h"

@@ -1,11 +1,12 @@
 // Measures how large the spheres of a tool should be for a scene, as scene-scale.md derives.
 #pragma once
 
+#include <vpm/level_query.h>
+
 #include <cstddef>
 #include <optional>
 #include <span>
 
-#include "libvpm/include/vpm/level_query.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/any_body.h"
 

@@ -2,6 +2,8 @@
 // backend. Programs see vpm/query.h.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,7 +11,6 @@
 #include "libvpm/backend/cpu/measure_paper.h"
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/backend/device_measure.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/scene/any_body.h"
 

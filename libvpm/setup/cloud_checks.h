@@ -1,13 +1,14 @@
 // All checks of a setup whose scene is one cloud, and which of their findings is said.
 #pragma once
 
+#include <vpm/query_types.h>
+#include <vpm/remark.h>
+
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/include/vpm/query_types.h"
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/setup/enclosed_check.h"

@@ -1,14 +1,15 @@
 // Finds poses at which a tool is wholly inside of what points without a camera enclose.
 #pragma once
 
+#include <vpm/query_types.h>
+#include <vpm/remark.h>
+
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/include/vpm/query_types.h"
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/setup/even_sample.h"
 

@@ -1,12 +1,13 @@
 // Finds poses at which a tool is behind the surface where its camera has measured nothing.
 #pragma once
 
+#include <vpm/remark.h>
+
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/setup/even_sample.h"

@@ -1,6 +1,9 @@
 // Finds tools that no pose brings to the scene, which mistakes in poses and frames cause.
 #pragma once
 
+#include <vpm/query_types.h>
+#include <vpm/remark.h>
+
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -9,8 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/include/vpm/query_types.h"
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/setup/checked_scene.h"
 #include "libvpm/setup/even_sample.h"

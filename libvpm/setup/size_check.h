@@ -1,10 +1,11 @@
 // Finds tools and scenes whose sizes cannot both be right, which mistakes of units cause.
 #pragma once
 
+#include <vpm/remark.h>
+
 #include <optional>
 #include <span>
 
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/setup/checked_scene.h"
 

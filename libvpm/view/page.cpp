@@ -1,5 +1,7 @@
 #include "libvpm/view/page.h"
 
+#include <vpm/version.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/view/simplify.h"
 #include "libvpm/view/sphere_files.h"
 

@@ -1,5 +1,7 @@
 #include "libvpm/view/sphere_files.h"
 
+#include <vpm/version.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,7 +14,6 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/view/packed.h"
 

@@ -1,4 +1,4 @@
-#include "brute_force.h"
+#include "tests/packing/brute_force.h"
 
 #include <algorithm>
 #include <array>

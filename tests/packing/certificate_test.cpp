@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brute_force.h"
-#include "test_solids.h"
+#include "tests/packing/brute_force.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "brute_force.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/stream.h"
@@ -16,7 +15,8 @@
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/model/sphere.h"
 #include "libvpm/packing/packer.h"
-#include "test_solids.h"
+#include "tests/packing/brute_force.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

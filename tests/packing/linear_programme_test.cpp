@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "test_solids.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

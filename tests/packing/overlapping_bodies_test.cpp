@@ -1,13 +1,13 @@
 // Meshes of bodies that overlap, touch or lie in each other are packed as their union.
 #include <gtest/gtest.h>
 
-#include "brute_force.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/validation.h"
-#include "test_solids.h"
+#include "tests/packing/brute_force.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

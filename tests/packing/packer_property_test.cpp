@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "brute_force.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/packer.h"
-#include "test_solids.h"
+#include "tests/packing/brute_force.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

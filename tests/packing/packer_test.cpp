@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "brute_force.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "test_solids.h"
+#include "tests/packing/brute_force.h"
+#include "tests/packing/test_solids.h"
 #include "tests/refusal.h"
 
 namespace vpm::test {

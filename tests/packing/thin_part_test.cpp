@@ -8,7 +8,7 @@
 
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/packer.h"
-#include "test_solids.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm::test {
 namespace {

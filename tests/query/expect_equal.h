@@ -2,8 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-
-#include "libvpm/include/vpm/query_types.h"
+#include <vpm/query_types.h>
 
 namespace vpm::testing {
 

@@ -2,10 +2,11 @@
 // known.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/synthetic/truth.h"
 #include "tools/bench/sight.h"
 #include "tools/bench/statistics.h"

@@ -4,11 +4,12 @@
 // places that no camera can know count for neither side (sight.h).
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <cstdint>
 #include <vector>
 
 #include "libvpm/device/device.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"

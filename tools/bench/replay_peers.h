@@ -1,12 +1,13 @@
 // Hand-written alternatives to the measure, to be timed beside it.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <memory>
 #include <vector>
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/cloud/depth_image.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm::bench {

@@ -1,5 +1,7 @@
 #include "tools/bench/report.h"
 
+#include <vpm/version.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -7,7 +9,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/include/vpm/version.h"
 
 namespace vpm::bench {
 namespace {

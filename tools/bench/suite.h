@@ -1,6 +1,9 @@
 // The suites of vpm-bench.
 #pragma once
 
+#include <vpm/device.h>
+#include <vpm/query_types.h>
+
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -8,8 +11,6 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/device/device.h"
-#include "libvpm/include/vpm/device.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "tools/bench/report.h"
 
 namespace vpm::bench {

@@ -1,6 +1,8 @@
 // Sweeps of tools into scenes: both measures against the truth.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <array>
 #include <functional>
 #include <map>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "libvpm/device/device.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/report.h"

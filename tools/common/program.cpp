@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <vpm/version.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -19,7 +20,6 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/include/vpm/version.h"
 #include "tools/common/early_failure.h"
 #include "tools/common/error_text.h"
 #include "tools/common/json_config.h"

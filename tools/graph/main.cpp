@@ -1,5 +1,7 @@
 // vpm-graph: turns a packing into the tool model that queries load.
 
+#include <vpm/version.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -8,7 +10,6 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing.h"

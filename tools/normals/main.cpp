@@ -1,5 +1,7 @@
 // vpm-normals: turns a depth image, or another program's cloud, into a cloud with normals (.vpmc).
 
+#include <vpm/version.h>
+
 #include <chrono>
 #include <cstdio>
 
@@ -9,7 +11,6 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"

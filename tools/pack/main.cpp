@@ -1,5 +1,7 @@
 // vpm-pack: fills a mesh with spheres that neither overlap nor protrude.
 
+#include <vpm/version.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,7 +18,6 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/include/vpm/version.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing.h"

@@ -1,13 +1,14 @@
 // Lines of results and statistics of vpm-query.
 #pragma once
 
+#include <vpm/level_query.h>
+
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "libvpm/include/vpm/level_query.h"
 #include "libvpm/query/tool_query.h"
 #include "tools/common/program.h"
 

@@ -1,11 +1,12 @@
 // Parts of a run that all modes of vpm-query share.
 #pragma once
 
+#include <vpm/remark.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
-#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/level_tool_query.h"
 #include "tools/query/arguments.h"

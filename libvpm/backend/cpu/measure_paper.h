@@ -3,11 +3,12 @@
 // (measure/README.md).
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <vector>
 
 #include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/measure/paper_contact.h"
 #include "libvpm/model/tool_model.h"

@@ -2,6 +2,8 @@
 // (measure/README.md).
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <atomic>
 #include <deque>
 #include <vector>
@@ -12,7 +14,6 @@
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/scene/any_body.h"
 

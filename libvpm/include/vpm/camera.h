@@ -1,9 +1,9 @@
 // Depth cameras: pinhole model, and how normals are estimated from their images.
 #pragma once
 
-#include <cstdint>
+#include <vpm/pose.h>
 
-#include "vpm/pose.h"
+#include <cstdint>
 
 namespace vpm {
 

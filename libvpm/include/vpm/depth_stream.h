@@ -7,15 +7,15 @@
 //   const vpm::Result r = query.run(scene, pose);   // a thousand times a second; <vpm/query.h>
 #pragma once
 
+#include <vpm/camera.h>
+#include <vpm/device.h>
+#include <vpm/error.h>
+#include <vpm/scene.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-
-#include "vpm/camera.h"
-#include "vpm/device.h"
-#include "vpm/error.h"
-#include "vpm/scene.h"
 
 namespace vpm {
 

@@ -1,10 +1,10 @@
 // Device on which queries are computed. Programs need no CUDA to be compiled against this.
 #pragma once
 
-#include <string>
+#include <vpm/error.h>
+#include <vpm/export.h>
 
-#include "vpm/error.h"
-#include "vpm/export.h"
+#include <string>
 
 namespace vpm {
 

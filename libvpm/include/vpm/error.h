@@ -1,11 +1,11 @@
 // Declares what every function of the library throws: what is wrong, where, and how to mend it.
 #pragma once
 
+#include <vpm/export.h>
+
 #include <memory>
 #include <stdexcept>
 #include <string>
-
-#include "vpm/export.h"
 
 namespace vpm {
 

@@ -1,15 +1,15 @@
 // Clouds of the files that sensors and other programs write. Library vpm::solid.
 #pragma once
 
+#include <vpm/camera.h>
+#include <vpm/error.h>
+#include <vpm/remark.h>
+#include <vpm/scene.h>
+
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "vpm/camera.h"
-#include "vpm/error.h"
-#include "vpm/remark.h"
-#include "vpm/scene.h"
 
 namespace vpm {
 

@@ -1,12 +1,12 @@
 // Queries that choose the tool's level of detail by what is asked of them.
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/query.h>
+
 #include <memory>
 #include <optional>
 #include <span>
-
-#include "vpm/error.h"
-#include "vpm/query.h"
 
 namespace vpm {
 

@@ -2,11 +2,11 @@
 // coordinates: x_world = rotation * x + translation.
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/export.h>
+
 #include <array>
 #include <string>
-
-#include "vpm/error.h"
-#include "vpm/export.h"
 
 namespace vpm {
 

@@ -6,15 +6,15 @@
 //   const vpm::Result r = query.run(scene, pose);                  // a thousand times a second
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/query_types.h>
+#include <vpm/scene.h>
+#include <vpm/tool.h>
+
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include "vpm/error.h"
-#include "vpm/query_types.h"
-#include "vpm/scene.h"
-#include "vpm/tool.h"
 
 namespace vpm {
 

@@ -1,11 +1,11 @@
 // Declares what a query is asked, and what it answers.
 #pragma once
 
+#include <vpm/device.h>
+#include <vpm/pose.h>
+
 #include <cstdint>
 #include <optional>
-
-#include "vpm/device.h"
-#include "vpm/pose.h"
 
 namespace vpm {
 

@@ -1,16 +1,16 @@
 // Declares what a tool is measured against: bodies in one world frame.
 #pragma once
 
+#include <vpm/camera.h>
+#include <vpm/error.h>
+#include <vpm/export.h>
+
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "vpm/camera.h"
-#include "vpm/error.h"
-#include "vpm/export.h"
 
 namespace vpm {
 

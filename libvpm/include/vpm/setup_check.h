@@ -9,15 +9,15 @@
 //   const vpm::Remarks remarks = check.remarks();          // to be shown, if there are any
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/query_types.h>
+#include <vpm/remark.h>
+#include <vpm/scene.h>
+#include <vpm/tool.h>
+
 #include <cstddef>
 #include <memory>
 #include <span>
-
-#include "vpm/error.h"
-#include "vpm/query_types.h"
-#include "vpm/remark.h"
-#include "vpm/scene.h"
-#include "vpm/tool.h"
 
 namespace vpm {
 

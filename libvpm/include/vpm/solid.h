@@ -7,6 +7,10 @@
 // bytes, for any number of threads.
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/pose.h>
+#include <vpm/tool.h>
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -16,10 +20,6 @@
 #include <span>
 #include <string>
 #include <vector>
-
-#include "vpm/error.h"
-#include "vpm/pose.h"
-#include "vpm/tool.h"
 
 namespace vpm {
 

@@ -1,15 +1,15 @@
 // The tool whose penetration is measured: a solid packed with spheres, at several levels of detail.
 #pragma once
 
+#include <vpm/error.h>
+#include <vpm/export.h>
+#include <vpm/pose.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "vpm/error.h"
-#include "vpm/export.h"
-#include "vpm/pose.h"
 
 namespace vpm {
 

@@ -1,7 +1,7 @@
 // The version of these headers, and of the library that a program runs with.
 #pragma once
 
-#include "vpm/export.h"
+#include <vpm/export.h>
 
 // The build reads the version here. Minor versions are compatible with themselves only, until 1.0.
 #define VPM_VERSION_MAJOR 0

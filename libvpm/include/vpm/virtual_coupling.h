@@ -11,12 +11,12 @@
 // Units: metres, newtons, seconds, radians; world axes. Not thread-safe.
 #pragma once
 
-#include <memory>
+#include <vpm/error.h>
+#include <vpm/export.h>
+#include <vpm/pose.h>
+#include <vpm/query_types.h>
 
-#include "vpm/error.h"
-#include "vpm/export.h"
-#include "vpm/pose.h"
-#include "vpm/query_types.h"
+#include <memory>
 
 namespace vpm {
 

@@ -1,12 +1,13 @@
 // Describes an image that becomes a cloud, and the tile of it that a block works on.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include "libvpm/cloud/covariance_fit.h"
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/runtime.h"
-#include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/cuda/device_bodies.h"
 #include "libvpm/scene/depth/denoised_image.h"
 

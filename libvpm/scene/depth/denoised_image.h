@@ -6,12 +6,13 @@
 // that holds a crease or a step. README.md has the reasons.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include <vector>
 
 #include "libvpm/cloud/padded_image.h"
 #include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/vec3.h"
-#include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/depth/denoised_pixel.h"
 #include "libvpm/scene/depth/depth_surface.h"
 

@@ -2,10 +2,11 @@
 // Immutable; safe to share between threads.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include <vector>
 
 #include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/cloud_order.h"
 #include "libvpm/scene/depth/denoised_image.h"
 #include "libvpm/scene/depth/depth_sampler.h"

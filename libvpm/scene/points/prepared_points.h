@@ -2,9 +2,10 @@
 // once, here. Immutable; safe to share between threads.
 #pragma once
 
+#include <vpm/camera.h>
+
 #include <vector>
 
-#include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/cloud_order.h"
 #include "libvpm/scene/points/disk_surface.h"
 

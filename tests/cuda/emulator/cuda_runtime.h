@@ -11,7 +11,7 @@
 #include <functional>
 #include <type_traits>
 
-#include "emulator.h"
+#include "tests/cuda/emulator/emulator.h"
 
 #define __global__
 #define __device__

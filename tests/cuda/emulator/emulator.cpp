@@ -1,4 +1,4 @@
-#include "emulator.h"
+#include "tests/cuda/emulator/emulator.h"
 
 #include <sys/mman.h>
 #include <ucontext.h>

@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-#include "cuda_runtime.h"
+#include "tests/cuda/emulator/cuda_runtime.h"
 
 namespace emulator {
 
