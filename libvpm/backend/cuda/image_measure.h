@@ -182,15 +182,19 @@ class ImageTaskGroup {
   // Classifies a task of a cluster that is cut by plane_.
   __device__ Counts classify_clipped() {
     const TaskBall& cell = task_.balls[kOfCell];
-    const PlaneSide side = side_of_plane(plane_.distance(cell.center), cell.radius);
-    const bool is_reached = side != PlaneSide::before;
-    const bool may_be_free = is_reached && (seen_.cell == Side::free || seen_.asks_pixels);
-    if (__any_sync(~0U, may_be_free) != 0 && is_free_in_cluster(may_be_free))
-      return Counts::not_at_all;
-    if (!is_reached) return Counts::not_at_all;
-    if (side == PlaneSide::behind)
-      return is(BlockTask::is_head) ? Counts::uniform : Counts::not_at_all;
-    return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
+    const double distance = plane_.distance(cell.center);
+    const bool may_be_free = side_of_plane(distance, cell.radius) != PlaneSide::before &&
+                             (seen_.cell == Side::free || seen_.asks_pixels);
+    const bool is_free = __any_sync(~0U, may_be_free) != 0 && is_free_in_cluster(may_be_free);
+    switch (side_in_cut_cluster(distance, cell.radius, [&] { return is_free; })) {
+      case PlaneSide::before:
+        break;
+      case PlaneSide::behind:
+        return is(BlockTask::is_head) ? Counts::uniform : Counts::not_at_all;
+      case PlaneSide::cut:
+        return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
+    }
+    return Counts::not_at_all;
   }
 
   // True if the cell's own pixels show it free though it is behind the plane. Call from all lanes.
