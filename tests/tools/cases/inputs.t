@@ -73,6 +73,7 @@ $ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph
 
 # So are a tool in millimetres that is no giant, the cure works, and nothing else is said of it; and poses in millimetres.
 $ sed -n 3,10p cube.off > corners.txt; (echo OFF; echo 8 12 0; awk '{print 75*$1, 150*$2, 250*$3}' corners.txt; tail -n +11 cube.off) > finger.off; vpm-pack finger.off -o finger.vpmp --spheres 30 --quiet && vpm-graph finger.vpmp -o finger.vpmg --quiet && vpm-query --tool finger.vpmg --cloud wall.vpmc --poses - -o /dev/null <<< $'0 0 0.95 0 0 0 1\n0 0 950 0 0 0 1'
+2> vpm-pack: warning: finger.off: the mesh is 50 m across: if its unit is the millimetre, give --scale 0.001
 2> vpm-query: warning: the tool is 60.2 m across and the scene 1.37 m: if the mesh is in millimetres, give vpm-pack --scale 0.001
 $ vpm-pack finger.off -o metres.vpmp --scale 0.001 --spheres 30 --quiet && vpm-graph metres.vpmp -o metres.vpmg --quiet && vpm-query --tool metres.vpmg --cloud wall.vpmc --pose 0,0,1.02,0,0,0,1 -o /dev/null
 $ printf '%s\n' '0 0 950 0 0 0 1' '10 0 960 0 0 0 1' > poses_mm.txt && vpm-query --tool cube.vpmg --cloud wall.vpmc --poses poses_mm.txt -o /dev/null
