@@ -260,9 +260,8 @@ void grow_together(const Program& program, const Arguments& a, const CheckedSoli
   result.coverage *= volume_of(result.spheres) / before;
 }
 
-// Says what was made: the size in words shows a wrong unit, and the coverage too few spheres.
-void say_result(const Program& program, const Arguments& a, const MeshFacts& facts,
-                const PackResult& result) {
+// Says why there are fewer spheres than asked for, or not the best ones.
+void say_result(const Program& program, const Arguments& a, const PackResult& result) {
   const std::string count = std::to_string(result.spheres.size());
   const auto fewer = [&](const char* why) {
     program.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
@@ -274,7 +273,12 @@ void say_result(const Program& program, const Arguments& a, const MeshFacts& fac
   if (result.partly_searched)
     program.note(
         "the spheres are so small beside the solid that only samples of its inside were searched");
-  const Vec3 sides = facts.high - facts.low;
+}
+
+// Says how much of a solid, whose box has these sides in metres, its spheres fill: the size shows a
+// wrong unit, the coverage too few spheres. To be called once all files are written.
+void say_summary(const Program& program, const PackResult& result, Vec3 sides) {
+  const std::string count = std::to_string(result.spheres.size());
   const bool is_large = std::max({sides.x, sides.y, sides.z}) >= 1;
   const double unit = is_large ? 1 : 0.001;
   char text[200];
@@ -332,7 +336,8 @@ void run(const Program& program, Arguments a) {
   refuse_uncertified(a.mesh, result.coverage, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_result(program, a, checked.facts, result);
+  say_result(program, a, result);
+  const Vec3 sides = checked.facts.high - checked.facts.low;
 
   std::optional<Validation> validation;
   if (a.validate) {
@@ -352,6 +357,7 @@ void run(const Program& program, Arguments a) {
     if (scene) packing.provenance["scene"] = scene_report(*scene);
     write_packing(a.output, packing);
   }
+  say_summary(program, result, sides);
 }
 
 }  // namespace

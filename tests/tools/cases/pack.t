@@ -15,8 +15,8 @@ $ python3 -c 'import json; r = json.load(open("report.json")); print(r["spheres"
 $ vpm-pack - -o - --spheres 9 --threads 1 < cube.off | cmp - cube.vpmp
 2> vpm-pack: note: 9 spheres fill 60.4 % of a solid of 1 x 1 x 1 m
 $ vpm-pack cube.off -o - --spheres 9 --threads 2 --validate | cmp - cube.vpmp
-2> vpm-pack: note: 9 spheres fill 60.4 % of a solid of 1 x 1 x 1 m
 2> vpm-pack: note: voxels: 0.604167 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
+2> vpm-pack: note: 9 spheres fill 60.4 % of a solid of 1 x 1 x 1 m
 $ vpm-pack cube.off --spheres 1 --export cube.yml && cat cube.yml
 collision_spheres:
   "cube":
@@ -28,8 +28,8 @@ $ vpm-pack cube.off --scale 0.001 --spheres 1 --report - | python3 -c 'import js
 2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 mm
 $ vpm-pack cube.off --spheres 1 --validate --report - | python3 -c 'import json, sys; v = json.load(sys.stdin)["validation"]; print(v["protruding_voxels"], v["overlapping_voxels"], abs(v["coverage"] - 0.5236) < 0.01)'
 0 0 True
-2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 m
 2> vpm-pack: note: voxels: 0.523591 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
+2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 m
 
 # Fewer spheres than asked for are delivered with the reason.
 $ vpm-pack cube.off --spheres 1000 --min-radius 0.3 --export one.csv

@@ -2,8 +2,8 @@
 
 $ cp $SOURCE/tests/tools/inputs/* .
 $ vpm-pack cube.off -o cube.vpmp --spheres 200 --validate --report pack.json
-2> vpm-pack: note: 200 spheres fill 77.6 % of a solid of 200 x 200 x 200 mm
 2> vpm-pack: note: voxels: 0.776272 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
+2> vpm-pack: note: 200 spheres fill 77.6 % of a solid of 200 x 200 x 200 mm
 $ vpm-graph cube.vpmp -o cube.vpmg --levels 50 --report graph.json
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report normals.json
 $ printf '%s\n' '0 0 0 0.8 0 0 0 1' '1 0 0 0.95 0 0 0 1' '2 0 0 1 0 0 0 1' > path.txt
