@@ -123,8 +123,18 @@ def scale_faults(tools):
         yield f"V09: no warning about the tool's size: {done.stderr}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def all_faults(tools):
+    tools.must("vpm-pack base/cube.off -o cube.vpmp --spheres 1000 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet")
+    tools.must(f"vpm-normals base_wall/wall.png -o wall.vpmc {CAMERA}")
+    yield from (fault for row in MESHES for fault in mesh_faults(tools, *row))
+    yield from (fault for row in CLOUDS for fault in cloud_faults(tools, *row))
+    yield from (fault for row in POSES for fault in pose_faults(tools, *row))
+    yield from scale_faults(tools)
+
+
+def main(description, faults_of):
+    """Prints the faults that faults_of(tools) finds in a copy of the data, and exits; `tools` run there."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", required=True, help="folders of the tools")
     parser.add_argument("data", type=pathlib.Path)
     options = parser.parse_args()
@@ -132,18 +142,12 @@ def main():
         print(f"skipped: there is no folder {options.data}")
         sys.exit(SKIPPED)
     with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary) / "reports"
+        folder = pathlib.Path(temporary) / "data"
         shutil.copytree(options.data, folder)
-        tools = Tools(options.bin, folder)
-        tools.must("vpm-pack base/cube.off -o cube.vpmp --spheres 1000 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet")
-        tools.must(f"vpm-normals base_wall/wall.png -o wall.vpmc {CAMERA}")
-        faults = [fault for row in MESHES for fault in mesh_faults(tools, *row)]
-        faults += [fault for row in CLOUDS for fault in cloud_faults(tools, *row)]
-        faults += [fault for row in POSES for fault in pose_faults(tools, *row)]
-        faults += scale_faults(tools)
+        faults = list(faults_of(Tools(options.bin, folder)))
     print("\n".join(faults))
     sys.exit(1 if faults else 0)
 
 
 if __name__ == "__main__":
-    main()
+    main(__doc__, all_faults)
