@@ -19,8 +19,10 @@ struct DepthFactor {
 // Returns the factor in an object of a calibration; empty if there is none that a depth image has.
 std::optional<DepthFactor> depth_factor_in(const Fields& fields);
 
-// Returns a note that the file's factor is not used if another was given, and a warning if none was
-// given and the file's is not 1000 or 1, which depth images have without being told.
+// Compares the factor that a file of intrinsics tells with the one that the caller gave, in units
+// per metre. Returns a note if both are there and differ: the file's is not used. Returns a warning
+// if the caller gave none and the file's is neither 1000 (millimetres) nor 1 (metres), which depth
+// images have without being told. Else returns nothing.
 Remarks unused_factor(const std::optional<DepthFactor>& factor,
                       const std::optional<double>& units_per_metre);
 

@@ -31,8 +31,8 @@ struct Entry {
   std::uint64_t size, local;  // bytes packed, and the place of the header before them
 };
 
-// Puts the numbers of 64 bits, which stand in the extra field of type 1, where those of 32 are
-// exhausted: the size unpacked, that packed and the place.
+// Replaces those numbers of an entry that do not fit into 32 bits and therefore stand, with 64
+// bits, in its extra field of type 1, in this order: unpacked size, packed size, place in the file.
 void take_large(std::string_view extra, bool has_unpacked, Entry& entry) {
   constexpr std::size_t kHead = 4;
   while (extra.size() > kHead) {

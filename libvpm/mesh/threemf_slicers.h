@@ -14,8 +14,8 @@ namespace vpm {
 
 enum class ThreemfRole { solid, left_out, cut_away };
 
-// Returns what a word of the core specification or of a slicer means; words that are not known are
-// solid, as slicers take them.
+// Returns what becomes of an object or volume whose type has this name in the core specification or
+// in a slicer's settings. A type that is not known is solid, as slicers take it.
 ThreemfRole role_of(const std::string& word);
 
 struct SlicerSettings {

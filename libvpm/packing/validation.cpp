@@ -194,8 +194,8 @@ class Count {
     }
   }
 
-  // False only if no voxel centre of the square has the mesh within kDisputed, where sides may be
-  // disputed.
+  // Returns false only if every voxel centre of the square is farther than kDisputed from the mesh,
+  // so that no two tests of the inside can disagree there.
   bool is_near_mesh(int x0, int y0, int z) const {
     constexpr double kReach =
         0.5 * (kSquare - 1);  // from the square's middle to its outer voxels, along an axis

@@ -63,7 +63,7 @@ struct Suspicion {
   CameraAxes axes = CameraAxes::opencv;  // those that the scene would have
 };
 
-// A scene with what its poses are compared by.
+// Scene with the search tree of its points and its size, by which poses of the tool are judged.
 struct PlacedScene {
   explicit PlacedScene(CheckedScene s)
       : scene(std::move(s)), tree(scene.positions), size(size_of(scene)) {}

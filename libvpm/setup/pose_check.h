@@ -18,7 +18,7 @@
 
 namespace vpm {
 
-// Ball about a tool, in world coordinates.
+// Ball that holds a tool: in the tool's own coordinates, or at a pose in the world's.
 struct ToolBall {
   Vec3 center;
   double radius = 0;  // m

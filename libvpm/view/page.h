@@ -122,8 +122,8 @@ class Page {
                 bool is_joined = true);
   void add_arrow(const std::string& name, const std::string& color, std::size_t body,
                  std::size_t column, bool ring);
-  // Adds the samples of each sphere's Voronoi cell, and returns their index for layers of spheres;
-  // `begin` has one entry more than there are spheres.
+  // Adds the samples, m, of the Voronoi cells of spheres, and returns the number by which layers of
+  // spheres name them. Sphere k has samples[begin[k]] to samples[begin[k + 1] - 1].
   std::size_t add_cells(std::span<const std::uint32_t> begin, std::span<const Vec3> samples);
 
   // Returns what main.js knows of the steps: {"name", "count", "start", ...}.

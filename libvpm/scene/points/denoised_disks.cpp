@@ -21,8 +21,9 @@ inline bool is_smooth(DiskKind kind) {
 
 constexpr std::uint32_t kFewOpposite = 5;
 constexpr double kStandsOff = 2;  // radii, from the disks about it
-// A disk with fewer alike ones than kFewTogether, also within twice the distance, is a stray; one
-// with fewer than kFewAlike, and with unlike ones about it, an outlier.
+// Neighbours are alike if their normals differ by less than 25 degrees (kAlike). A disk is a stray
+// if fewer than kFewTogether neighbours are alike, even within twice the usual distance, and an
+// outlier if fewer than kFewAlike are and too many others are not.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 // Most unlike disks about a disk, as a part of the alike ones.
 constexpr double kUnlikeOfSmooth = 0.1;
