@@ -11,7 +11,8 @@
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/scene/body.h"
-#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/depth/depth_sampler.h"
+#include "libvpm/scene/mean_plane.h"
 
 namespace vpm {
 namespace {
@@ -60,23 +61,31 @@ class FaceNormals {
   std::vector<double> area_;  // cumulative
 };
 
-// Cut of the solid, about its centre of mass: a plane with the cut-off part below it, or a ball
-// that contains that part.
+// Cut of the solid, about its centre of mass: the part of it below a plane, or in a ball.
 struct Cut {
-  Vec3 normal;
-  double offset = 0;
-  Sphere ball;  // radius 0 if the cut is a plane
+  TangentPlane plane;
+  Sphere ball;  // radius 0 if the cut is by the plane
   double truth = 0;
 
-  // Returns the plane that a query would fit to a planar cluster about x: the mean of samples at
-  // its middle and around it (DepthSurface::mean_plane). For radius 0 that is the tangent plane, as
-  // for single blocks.
-  Cut plane_at(Vec3 x, double radius) const {
-    if (!(ball.radius > 0)) return *this;
-    const Vec3 away = normalized_or_zero(x - ball.center);
-    const double rim = DepthSurface::kRim * radius;
-    const double lower = ball.radius / std::sqrt(ball.radius * ball.radius + rim * rim);
-    return {away, dot(away, ball.center) + 0.2 * (1 + 4 * lower) * ball.radius, {}, truth};
+  bool is_by_plane() const { return !(ball.radius > 0); }
+  // Samples the cutting surface as a query does that of a body.
+  SurfaceSample sample(Vec3 x) const {
+    if (is_by_plane()) return {true, plane.distance(x), plane.normal, plane.foot};
+    const Vec3 from_center = x - ball.center, away = normalized_or_zero(from_center);
+    return {true, norm(from_center) - ball.radius, away, ball.center + ball.radius * away};
+  }
+  // Returns the plane that a query takes for a block about x: the tangent plane.
+  TangentPlane plane_of_block(Vec3 x) const {
+    if (is_by_plane()) return plane;
+    const SurfaceSample on_surface = sample(x);
+    return {on_surface.normal, on_surface.foot};
+  }
+  // Finds the plane that a query takes for a planar cluster about x. Returns false if it takes
+  // those of blocks instead.
+  bool find_plane(Vec3 x, double radius, TangentPlane& mean) const {
+    mean = plane;
+    return is_by_plane() ||
+           mean_of_five(*this, x, radius, DepthSampler::kSmoothCosine, SampleInTurn{}, mean);
   }
 };
 
@@ -100,22 +109,21 @@ std::vector<Cut> make_cuts(const Solid& solid) {
       high = std::max(high, dot(normal, v));
     }
     const double depth = numbers.uniform();
-    cuts[k].normal = normal;
-    cuts[k].offset =
+    const double offset =
         along_face ? high - depth * depth * depth * (high - low) : low + depth * (high - low);
-    if (k >= kCalibrationCuts) cuts[k].ball = {(cuts[k].offset - radius) * normal, radius};
+    cuts[k].plane = {normal, offset * normal};
+    if (k >= kCalibrationCuts) cuts[k].ball = {(offset - radius) * normal, radius};
   }
   return cuts;
 }
 
-double fraction_inside(const Level& level, const CellBlock& block, const Cut& plane) {
+double fraction_inside(const Level& level, const CellBlock& block, const TangentPlane& plane) {
   double sum = 0;
   for (std::uint32_t k = block.begin; k < block.end; ++k) {
     const CellSample& s = level.samples[k];
-    const double distance = dot(plane.normal, widen(s.center)) - plane.offset;
     bool is_cut = false;
-    sum += weight_behind(BallShape<double>{s.radius}, plane.normal, distance, double{s.weight},
-                         is_cut);
+    sum += weight_behind(shape_of(s), plane.normal, plane.distance(widen(s.center)),
+                         double{s.weight}, is_cut);
   }
   return sum;
 }
@@ -124,14 +132,15 @@ double fraction_inside(const ToolModel& model, const Level& level, const CellClu
                        const Cut& cut) {
   double sum = 0;
   for (const CellCluster& cluster : clusters.clusters) {
-    const bool is_planar = may_be_planar(cluster.reach, model.radius);
-    const Cut of_plane = cut.plane_at(cluster.center, cluster.reach);
+    TangentPlane mean;
+    const bool is_planar = may_be_planar(cluster.reach, model.radius) &&
+                           cut.find_plane(cluster.center, cluster.reach, mean);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const std::uint32_t i = clusters.cells[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
         const CellBlock& block = level.blocks[b];
         sum += fraction_inside(level, block,
-                               is_planar ? of_plane : cut.plane_at(widen(block.center), 0));
+                               is_planar ? mean : cut.plane_of_block(widen(block.center)));
       }
     }
   }
@@ -163,8 +172,10 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Cut& cut = cuts[k];
-      cut.truth = cut.ball.radius > 0 ? volume_in_ball(centered, cut.ball)
-                                      : volume_below_plane(centered, cut.normal, cut.offset);
+      const Vec3 normal = cut.plane.normal;
+      cut.truth = cut.is_by_plane()
+                      ? volume_below_plane(centered, normal, dot(normal, cut.plane.foot))
+                      : volume_in_ball(centered, cut.ball);
       for (std::size_t l = 0; l < model.levels.size(); ++l) {
         const double inside = fraction_inside(model, model.levels[l], clusters[l], cut);
         errors[l][k] = std::abs(inside - cut.truth / model.volume);

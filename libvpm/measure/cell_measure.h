@@ -2,7 +2,9 @@
 //
 // Samples are compact pieces with centroid, volume and radius, in blocks with an enclosing ball. A
 // block without surface counts whole or not at all; in the others each sample counts by its
-// fraction.
+// fraction. The step of a piece is: sample the surface at its middle (sample_of), note what it
+// tells of the cell (note), find the direction that way_out() names, push or divide it (push).
+// Backends choose where directions are searched for, and in which order.
 #pragma once
 
 #include "libvpm/measure/classify.h"
@@ -41,6 +43,18 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
                                 ToolSum& sum) {
   if (side == PlaneSide::behind) add_whole(tool, mass, normal, sum);
   if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
+}
+
+// Tells along which direction a piece is pushed out of the solid.
+enum class WayOut : std::uint8_t {
+  none,     // nothing of it is inside
+  sampled,  // the surface cuts it: along the normal sampled at its middle
+  own,      // along the nearest way out of its middle
+  shared,   // along that of the first of its neighbours (neighbors_of) with such a direction
+};
+// True of directions that are searched for, by the piece or by its neighbour.
+VPM_HD constexpr bool is_searched(WayOut way) {
+  return way == WayOut::own || way == WayOut::shared;
 }
 
 // Returns the group of neighbouring samples to which sample `k` of a block belongs: those of a
@@ -86,7 +100,7 @@ class CellMeasure {
     const auto add_if_far = [&](const ToolPiece& piece) {
       const PieceSample sampled = sample_piece(piece);
       if (sampled.is_far && supports(sampled.x, sampled.on_surface.foot))
-        add(piece, sampled, surface_, sum);
+        push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
     };
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
@@ -120,7 +134,7 @@ class CellMeasure {
                               ToolSum& sum) const {
     const PieceSample sampled = sample_piece(piece);
     if (sampled.is_inside && (!sampled.is_far || supports(sampled.x, sampled.on_surface.foot)))
-      add(piece, sampled, surface_, sum);
+      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
   }
 
   // Holds the class of one block of the cell.
@@ -173,28 +187,34 @@ class CellMeasure {
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
                                const SurfaceSample& on_surface) const {
     PieceSample sampled{x, on_surface};
-    sampled.is_inside =
-        on_surface.known && side_of_plane(on_surface.distance, piece.radius) != PlaneSide::before;
+    sampled.is_inside = on_surface.known && side_of(piece, on_surface) != PlaneSide::before;
     if (!sampled.is_inside) return sampled;
     sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_radius_);
     return sampled;
   }
   VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
-    return side_of_plane(sampled.on_surface.distance, piece.radius) == PlaneSide::cut;
+    return side_of(piece, sampled.on_surface) == PlaneSide::cut;
   }
-  // Adds a piece that is inside; `near` samples the surface about it.
-  template <class Near>
-  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, const Near& near,
-                  ToolSum& sum) const {
-    add(piece, sampled, is_cut(piece, sampled) ? Vec3{} : closest_normal(sampled), near, sum);
+  // Returns along which direction a piece is pushed. Samples share directions, other pieces
+  // (is_sample is false) do not.
+  VPM_HD static WayOut way_out(const ToolPiece& piece, const PieceSample& sampled, bool is_sample) {
+    if (!sampled.is_inside) return WayOut::none;
+    if (is_cut(piece, sampled)) return WayOut::sampled;
+    return Surface::kSearchesFoot && is_sample && !sampled.is_far ? WayOut::shared : WayOut::own;
   }
-  // Adds a piece that is inside. Pushes a cut one along the sampled normal, others along `way_out`.
+  // Returns that direction for a piece that shares none, for push().
+  VPM_HD Vec3 own_normal(WayOut way, const PieceSample& sampled) const {
+    return way == WayOut::own ? closest_normal(sampled) : Vec3{};
+  }
+  // Adds a piece that is inside. Pushes a cut one along the sampled normal, others along
+  // `searched`, the direction that was found; divides it where another wall is nearer to a part of
+  // it. `near` samples the surface about the piece.
   template <class Near>
-  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, Vec3 way_out,
-                  const Near& near, ToolSum& sum) const {
+  VPM_HD void push(const ToolPiece& piece, const PieceSample& sampled, Vec3 searched,
+                   const Near& near, ToolSum& sum) const {
     const bool cut = is_cut(piece, sampled);
     const ToolPiece part = cut ? part_behind(piece, sampled) : piece;
-    const Vec3 normal = cut ? sampled.on_surface.normal : way_out;
+    const Vec3 normal = cut ? sampled.on_surface.normal : searched;
     OtherWall other;
     if (is_divisible(part.extent, tool_radius_) &&
         finds_other_wall(near, sampled.x, {normal, sampled.on_surface.foot},
@@ -205,17 +225,11 @@ class CellMeasure {
   }
   // Returns the part of a cut piece behind the surface, with the piece's centroid.
   VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
-    piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.radius);
+    piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.shape);
     return piece;
   }
   VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
     return surface_.closest_normal(sampled.x, sampled.on_surface);
-  }
-  // True if a sample takes the direction of its neighbours (neighbors_of): where directions are
-  // searched for. Far ones have their own.
-  VPM_HD static bool shares_direction(const ToolPiece& sample, const PieceSample& sampled) {
-    return Surface::kSearchesFoot && sampled.is_inside && !sampled.is_far &&
-           !is_cut(sample, sampled);
   }
   // Adds a piece at x that is divided between two walls; `normal` is the nearest wall's.
   VPM_HD void add_divided(const ToolPiece& piece, Vec3 x, Vec3 normal, const OtherWall& other,
@@ -225,7 +239,8 @@ class CellMeasure {
       const ClipPlane border(other.border, to_surface_);
       part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin);
     } else {
-      part.weight = piece.weight * ball_fraction_inside(other.border.distance(x) / piece.extent);
+      part.weight = piece.weight * fraction_behind(PieceShape<double>{piece.extent},
+                                                   other.border.distance(x), other.border.normal);
       part.moment = part.weight * piece.at;
     }
     sum.add_moment(part.weight, arm(part.moment), in_tool(other.normal));
@@ -252,7 +267,9 @@ class CellMeasure {
   VPM_HD void add_piece(const ToolPiece& piece, CellResult& result) const {
     const PieceSample sampled = sample_piece(piece, result.point);
     result.point = sampled.on_surface.point;
-    if (note(piece, sampled, result)) add(piece, sampled, surface_, result.sum);
+    if (note(piece, sampled, result))
+      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_,
+           result.sum);
   }
   // Holds the direction found for a run of neighbouring samples.
   struct SharedDirection {
@@ -266,12 +283,11 @@ class CellMeasure {
     const PieceSample sampled = sample_of(piece, x, near.sample(x, result.point));
     result.point = sampled.on_surface.point;
     if (!note(piece, sampled, result)) return;
-    if (!shares_direction(piece, sampled)) {
-      add(piece, sampled, near, result.sum);
-      return;
-    }
-    if (shared.neighbors != neighbors_of(k)) shared = {neighbors_of(k), closest_normal(sampled)};
-    add_pushed(piece, shared.normal, result.sum);
+    const WayOut way = way_out(piece, sampled, true);
+    if (way == WayOut::shared && shared.neighbors != neighbors_of(k))
+      shared = {neighbors_of(k), closest_normal(sampled)};
+    push(piece, sampled, way == WayOut::shared ? shared.normal : own_normal(way, sampled), near,
+         result.sum);
   }
 
   VPM_HD void add_to_plane(Vec3 center, const ClipPlane& plane, ContactPlane& mean) const {
@@ -296,6 +312,9 @@ class CellMeasure {
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:
+  VPM_HD static PlaneSide side_of(const ToolPiece& piece, const SurfaceSample& on_surface) {
+    return side_of_plane(on_surface.distance, piece.shape.reach_toward(on_surface.normal));
+  }
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
     return tool_radius_.inverse * about_center_of_mass;
   }

@@ -64,6 +64,47 @@ enum class ClusterClass : std::uint8_t {
   uniform,      // planar and behind_near: all of it is pushed along one normal
 };
 
+// Returns the side on which the cells of a cluster of this class lie. Of a planar one that is cut
+// or uniform, the plane or the direction tells more.
+VPM_HD constexpr Side side_of_cells(ClusterClass found) {
+  switch (found) {
+    case ClusterClass::free:
+      return Side::free;
+    case ClusterClass::no_surface:
+    case ClusterClass::by_middle:
+      return Side::no_surface;
+    case ClusterClass::behind:
+    case ClusterClass::behind_near:
+    case ClusterClass::uniform:
+      return Side::behind;
+    case ClusterClass::ambiguous:
+    case ClusterClass::cut:
+      break;
+  }
+  return Side::ambiguous;
+}
+
+// Returns what the flood knows of the cells of a cluster of this class, other than an ambiguous
+// one.
+VPM_HD constexpr FloodState flood_state_of(ClusterClass found) {
+  switch (found) {
+    case ClusterClass::by_middle:
+      return FloodState::middle;
+    case ClusterClass::behind_near:
+    case ClusterClass::uniform:
+      return FloodState::near;
+    case ClusterClass::cut:
+      return FloodState::planar;
+    case ClusterClass::no_surface:
+    case ClusterClass::behind:
+      return FloodState::unknown;
+    case ClusterClass::free:
+    case ClusterClass::ambiguous:
+      break;
+  }
+  return FloodState::closed;
+}
+
 // Returns the class of a ball as far as classify_ball() tells. An ambiguous one may still be cut by
 // one plane (finds_cluster_plane), a small one without a surface be uniform (class_by_middle).
 template <MeasuredBody Surface>

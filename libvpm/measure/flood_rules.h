@@ -32,6 +32,14 @@ enum class FloodState : std::uint8_t {
   near,     // passable, no place of its cluster is further behind the surface than the tool radius
 };
 
+// Returns the class of a cell on this side of the surface that needs no measuring: not of one that
+// is ambiguous.
+VPM_HD constexpr CellClass class_on_side(Side side) {
+  return side == Side::behind       ? CellClass::whole
+         : side == Side::no_surface ? CellClass::no_surface
+                                    : CellClass::free;
+}
+
 // The same of a cell on a device, as a word of bits that threads add in any order. Where a camera
 // tells what is inside, only `cut` and `counted` are set; the rest serves the flood.
 namespace cell_bit {

@@ -1,5 +1,5 @@
-// Defines the parts of a cell (blocks, samples, pieces), the shape that stands for a piece, what a
-// plane clips of it, and the sums of what parts add to an answer.
+// Defines the parts of a cell (blocks, samples, pieces), what a plane clips of them, and the sums
+// of what parts add to an answer.
 #pragma once
 
 #include "libvpm/core/division.h"
@@ -8,6 +8,7 @@
 #include "libvpm/core/vec3.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/body.h"
+#include "libvpm/scene/piece_shape.h"
 
 namespace vpm {
 
@@ -62,44 +63,32 @@ struct CellView {
   double reach = 0;                  // bounding radius of the cell about `center`, m
 };
 
-// Describes a compact piece of a cell: a sample, or an uncut block or cell (radius 0).
+// Describes a compact piece of a cell: a sample, or a block or cell that is taken whole, as if all
+// of it were at its centroid.
 struct ToolPiece {
-  Vec3 at;  // centroid, about the tool's centre of mass, m
-  double radius = 0, weight = 0;
+  Vec3 at;                           // centroid, about the tool's centre of mass, m
+  PieceShape<double> shape{};        // without extent for a block or cell
+  double weight = 0;                 // volume, in parts of the tool's
   double extent = 0;                 // bounding radius about the centroid, nearly, m
   std::uint32_t begin = 0, end = 0;  // samples of a block or cell taken whole
 };
+VPM_HD inline PieceShape<double> shape_of(const CellSample& sample) {
+  return {sample.radius};
+}
 VPM_HD inline ToolPiece piece_of(const CellSample& sample) {
-  return {widen(sample.center), sample.radius, sample.weight, sample.radius, 0, 0};
+  return {widen(sample.center), shape_of(sample), sample.weight, sample.radius, 0, 0};
 }
 VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellBlock& block) {
-  return {mass.centroid, 0, mass.weight, block.radius, block.begin, block.end};
+  return {mass.centroid, {}, mass.weight, block.radius, block.begin, block.end};
 }
 VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellView& cell) {
-  ToolPiece piece{mass.centroid, 0, mass.weight, cell.reach, 0, 0};
+  ToolPiece piece{mass.centroid, {}, mass.weight, cell.reach, 0, 0};
   if (cell.begin < cell.end) {
     piece.begin = cell.blocks[cell.begin].begin;
     piece.end = cell.blocks[cell.end - 1].end;
   }
   return piece;
 }
-
-// Stands for a piece of the tool; only its two functions know which shape that is. Replaces a piece
-// by the ball with its second moment. The fraction of a thin layer depends on the
-// second moment only, so the ball is right to second order for any compact piece. Real is double,
-// or a vector of doubles.
-template <class Real>
-struct BallShape {
-  Real radius;
-
-  // Returns the extent of the piece from its middle toward a plane with this normal, m.
-  [[gnu::always_inline]] VPM_HD Real reach_toward(const Vec3& /*normal*/) const { return radius; }
-  // Returns the fraction of the piece behind a plane that cuts it at this signed distance, m.
-  [[gnu::always_inline]] VPM_HD Real fraction_behind(const Real& distance,
-                                                     const Vec3& /*normal*/) const {
-    return fraction_of_cut_ball(quotient(distance, radius));
-  }
-};
 
 // Describes a plane that cuts the tool, in the surface's frame and about the tool's centre of mass.
 struct ClipPlane {
@@ -129,7 +118,7 @@ inline constexpr std::uint32_t kSumRows = 16;
 
 // Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
 // the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
-// lanes would all wait for the slowest. Real is double or a vector; BallShape is a Shape.
+// lanes would all wait for the slowest. Real is double or a vector; PieceShape is a Shape.
 template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,
@@ -137,7 +126,7 @@ template <class Shape, class Real, class Mask>
   const Real reach = shape.reach_toward(normal);
   const Mask reached = distance < reach;
   is_cut = reached & (distance > -reach);
-  const Real part = weight * shape.fraction_behind(distance, normal);
+  const Real part = weight * shape.fraction_of_cut(distance, normal);
   return reached ? (is_cut ? part : weight) : Real{};
 }
 // Adds the part of a sample behind a plane to its row. Adds zeros too, so that no row is ever -0.
@@ -145,8 +134,8 @@ VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, 
                               bool& is_cut) {
   bool cut = false;
   const double inside =
-      weight_behind(BallShape<double>{sample.radius}, plane.normal,
-                    plane.distance(widen(sample.center)), double{sample.weight}, cut);
+      weight_behind(shape_of(sample), plane.normal, plane.distance(widen(sample.center)),
+                    double{sample.weight}, cut);
   is_cut |= cut;
   row.weight += inside;
   row.moment += inside * widen(sample.center);

@@ -14,25 +14,11 @@
 
 #include "libvpm/core/host_device.h"
 #include "libvpm/core/vector_width.h"
+#include "libvpm/scene/piece_shape.h"
 
 namespace vpm {
 
-// Returns ball_fraction_inside() for distances within [-1, 1]. Real is double or a vector.
-template <class Real>
-[[gnu::always_inline]] VPM_HD constexpr Real fraction_of_cut_ball(const Real& distance) {
-  const Real away = 1 - distance;
-  return away * away * (2 + distance) / 4;
-}
-
-// Returns the fraction of a ball on the inner side of a plane at signed distance `distance` (in
-// radii; negative where the centre is inside). Exact, monotone, 0 and 1 outside of [-1, 1].
-VPM_HD constexpr double ball_fraction_inside(double distance) {
-  if (distance >= 1) return 0;
-  if (distance <= -1) return 1;
-  return fraction_of_cut_ball(distance);
-}
-
-// Returns the fraction of a ball behind two planes that leave the given fractions; `cosine` is of
+// Returns the fraction of a piece behind two planes that leave the given fractions; `cosine` is of
 // the angle between their normals. Exact for opposite and equal planes, and for perpendicular ones
 // through the centre; interpolated between these.
 VPM_HD constexpr double fraction_of_both(double first, double second, double cosine) {
@@ -148,8 +134,8 @@ inline constexpr double kOneDirection = 0.95;
 //       finds the mean plane of the surface across a ball that may_be_flat()
 //   bool is_flat(in_ball, read, tolerance, plane)
 //       finds the plane at the middle of such a ball, which read() samples
-//   double fraction_inside(sample, x, radius)
-//       returns the part of a ball about x behind the sampled surface
+//   double fraction_inside(sample, x, shape)
+//       returns the part of a piece about x, of any shape, behind the sampled surface
 //   around_ball(center, radius, point)
 //       returns a sampler for places in the ball, faster than the body itself
 // kTellsInside is true if places behind the surface are inside as far as anybody knows, so that no
@@ -167,7 +153,7 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSam
   { body.may_be_flat(in_ball) } -> std::same_as<bool>;
   { body.mean_plane(in_ball, x, length, length, SampleInTurn{}, plane) } -> std::same_as<bool>;
   { body.is_flat(in_ball, read, length, plane) } -> std::same_as<bool>;
-  { body.fraction_inside(on_surface, x, length) } -> std::same_as<double>;
+  { body.fraction_inside(on_surface, x, PieceShape<double>{}) } -> std::same_as<double>;
   body.around_ball(x, length, kNoPoint);
   { B::kTellsInside } -> std::convertible_to<bool>;
   { B::kSearchesFoot } -> std::convertible_to<bool>;

@@ -6,7 +6,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/body.h"
+#include "libvpm/scene/piece_shape.h"
 #include "tests/graph/test_packing.h"
 
 namespace vpm {
@@ -54,8 +54,8 @@ TEST(Calibration, HoldsForOtherCuts) {
       const double offset = numbers.uniform(-0.9, 0.9) * made.model.radius;
       double sum = 0;
       for (const CellSample& s : made.model.levels[k].samples) {
-        sum += s.weight *
-               ball_fraction_inside((dot(normal, widen(s.center)) - offset) / double{s.radius});
+        const double height = dot(normal, widen(s.center)) - offset;
+        sum += s.weight * fraction_behind(BallShape<double>{s.radius}, height, normal);
       }
       const double truth = test::volume_below(made.packing.solid, normal,
                                               offset + dot(normal, made.model.center_of_mass)) /

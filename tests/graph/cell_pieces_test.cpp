@@ -6,7 +6,7 @@
 #include <span>
 
 #include "libvpm/graph/build_tool_model.h"
-#include "libvpm/scene/body.h"
+#include "libvpm/scene/piece_shape.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/graph/test_packing.h"
 
@@ -18,7 +18,8 @@ namespace {
 double fraction_inside(const Level& level, const std::function<double(Vec3)>& distance) {
   double sum = 0;
   for (const CellSample& s : level.samples) {
-    sum += s.weight * ball_fraction_inside(distance(widen(s.center)) / double{s.radius});
+    sum +=
+        s.weight * fraction_behind(BallShape<double>{s.radius}, distance(widen(s.center)), Vec3{});
   }
   return sum;
 }

@@ -40,8 +40,9 @@ struct HalfSpace {
     plane = top;
     return true;
   }
-  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) const {
-    return ball_fraction_inside(on_surface.distance / radius);
+  template <class Shape>
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, const Shape& shape) const {
+    return fraction_behind(shape, on_surface.distance, on_surface.normal);
   }
   VPM_HD const HalfSpace& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };
@@ -102,8 +103,9 @@ struct Step {
     plane = top;
     return !in_ball.holds_free;
   }
-  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) const {
-    return ball_fraction_inside(on_surface.distance / radius);
+  template <class Shape>
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, const Shape& shape) const {
+    return fraction_behind(shape, on_surface.distance, on_surface.normal);
   }
   VPM_HD const Step& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
@@ -178,8 +180,9 @@ struct Both {
                ? one.is_flat(in_ball.one, read, tolerance, plane)
                : other.is_flat(in_ball.other, read, tolerance, plane);
   }
-  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) const {
-    return ball_fraction_inside(on_surface.distance / radius);
+  template <class Shape>
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, const Shape& shape) const {
+    return fraction_behind(shape, on_surface.distance, on_surface.normal);
   }
   VPM_HD const Both& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };

@@ -29,7 +29,7 @@ double part_behind(const ToolModel& tool, const Pose& pose, const Distance& dist
   double part = 0;
   for (const CellSample& sample : tool.levels[0].samples) {
     const Vec3 at = pose * (tool.center_of_mass + widen(sample.center));
-    part += sample.weight * ball_fraction_inside(distance(at) / sample.radius);
+    part += sample.weight * fraction_behind(BallShape<double>{sample.radius}, distance(at), Vec3{});
   }
   return part;
 }

@@ -1,10 +1,13 @@
-// With another piece shape the rule of clipped weights gives that shape's volumes.
+// With another piece shape the rule of clipped weights, and the bodies, give that shape's volumes.
+
+#include "libvpm/scene/piece_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libvpm/measure/tool_piece.h"
+#include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
 namespace {
@@ -17,7 +20,7 @@ struct BoxShape {
     return std::fabs(normal.x) * half.x + std::fabs(normal.y) * half.y +
            std::fabs(normal.z) * half.z;
   }
-  double fraction_behind(double distance, const Vec3& normal) const {
+  double fraction_of_cut(double distance, const Vec3& normal) const {
     const double reach = reach_toward(normal);
     return 0.5 * (reach - distance) / reach;
   }
@@ -56,6 +59,26 @@ TEST(PieceShape, BallsOfTheSameMomentErrByAPartOfAPieceOnly) {
   }
   EXPECT_LT(largest, 0.02);
   EXPECT_GT(largest, 0.0);  // a ball is no box
+}
+
+TEST(PieceShape, BodiesAskTheShape) {
+  const BoxShape box{{0.1, 0.2, 0.3}};
+  SurfaceSample on_surface{true, 0, {0, 0, 1}, {}};
+  for (const double height : {-0.4, -0.3, -0.15, 0.0, 0.15, 0.3, 0.4}) {
+    on_surface.distance = height;
+    const double expected = std::min(1.0, std::max(0.0, 0.5 - height / 0.6));
+    EXPECT_NEAR(DepthSurface::fraction_inside(on_surface, {}, box), expected, 1e-14);
+    EXPECT_NEAR(fraction_behind(box, height, Vec3{0, 0, 1}), expected, 1e-14);
+  }
+}
+
+TEST(PieceShape, BodiesOfSamplesAreTheBallsOfTheirRadius) {
+  CellSample sample;
+  sample.radius = 0.25F;
+  EXPECT_EQ(shape_of(sample).reach_toward(Vec3{0, 0, 1}), 0.25);
+  EXPECT_EQ(fraction_behind(shape_of(sample), 0.0, Vec3{0, 0, 1}), 0.5);
+  // A cap as high as half the radius holds 5 / 32 of a ball.
+  EXPECT_NEAR(fraction_behind(shape_of(sample), 0.125, Vec3{0, 0, 1}), 5.0 / 32, 1e-15);
 }
 
 TEST(PieceShape, WhatIsOnlyTouchedIsNotCut) {

@@ -8,6 +8,9 @@
 #include "libvpm/measure/cell_measure.h"
 #include "libvpm/measure/classify.h"
 #include "libvpm/measure/flood_rules.h"
+#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/mean_plane.h"
+#include "libvpm/scene/points/disk_surface.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -35,6 +38,82 @@ TEST(ClassOfResult, IsCutIfTheSurfacePassesElsePartialIfAnythingIsBehindIt) {
   EXPECT_EQ(class_of_result(result), CellClass::partial);
   result.plane.add({0, 0, 1}, {});
   EXPECT_EQ(class_of_result(result), CellClass::cut);
+}
+
+TEST(SideOfCells, IsThatOfTheClusterUnlessTheSurfacePasses) {
+  EXPECT_EQ(side_of_cells(ClusterClass::free), Side::free);
+  for (const ClusterClass found :
+       {ClusterClass::behind, ClusterClass::behind_near, ClusterClass::uniform})
+    EXPECT_EQ(side_of_cells(found), Side::behind);
+  for (const ClusterClass found : {ClusterClass::no_surface, ClusterClass::by_middle})
+    EXPECT_EQ(side_of_cells(found), Side::no_surface);
+  for (const ClusterClass found : {ClusterClass::ambiguous, ClusterClass::cut})
+    EXPECT_EQ(side_of_cells(found), Side::ambiguous);
+}
+
+TEST(ClassOnSide, IsWholeBehindTheSurface) {
+  EXPECT_EQ(class_on_side(Side::free), CellClass::free);
+  EXPECT_EQ(class_on_side(Side::behind), CellClass::whole);
+  EXPECT_EQ(class_on_side(Side::no_surface), CellClass::no_surface);
+}
+
+TEST(FloodStateOf, IsClosedToWhatIsFreeAndNearWhereNothingIsFurther) {
+  EXPECT_EQ(flood_state_of(ClusterClass::free), FloodState::closed);
+  EXPECT_EQ(flood_state_of(ClusterClass::no_surface), FloodState::unknown);
+  EXPECT_EQ(flood_state_of(ClusterClass::behind), FloodState::unknown);
+  EXPECT_EQ(flood_state_of(ClusterClass::by_middle), FloodState::middle);
+  EXPECT_EQ(flood_state_of(ClusterClass::behind_near), FloodState::near);
+  EXPECT_EQ(flood_state_of(ClusterClass::uniform), FloodState::near);
+  EXPECT_EQ(flood_state_of(ClusterClass::cut), FloodState::planar);
+}
+
+// Pushes what is before the plane nowhere, what it cuts along the plane's normal, and what is
+// behind along the way out: its own, or that of its neighbours where bodies search for it.
+template <class Body>
+void expect_ways(WayOut of_sample) {
+  const Body body{};
+  const CellMeasure<Body> measure(body, Pose{}, ToolRadius(0.1, Shadows::near), CellView{});
+  CellSample sample;
+  sample.radius = 0.01F;
+  const ToolPiece piece = piece_of(sample);
+  const auto way = [&](double distance, bool is_sample) {
+    const SurfaceSample on_surface{true, distance, {0, 0, 1}, {}};
+    return measure.way_out(piece, measure.sample_of(piece, {}, on_surface), is_sample);
+  };
+  for (const bool is_sample : {false, true}) {
+    EXPECT_EQ(way(0.02, is_sample), WayOut::none);
+    EXPECT_EQ(way(0.005, is_sample), WayOut::sampled);
+    EXPECT_EQ(way(-0.005, is_sample), WayOut::sampled);
+    EXPECT_EQ(way(-0.2, is_sample), WayOut::own);  // far
+  }
+  EXPECT_EQ(way(-0.05, false), WayOut::own);
+  EXPECT_EQ(way(-0.05, true), of_sample);
+  EXPECT_EQ(measure.way_out(piece, measure.sample_of(piece, {}, {}), true), WayOut::none);
+}
+TEST(WayOut, IsSharedBySamplesOfABodyThatSearches) {
+  expect_ways<DepthSurface>(WayOut::shared);
+  expect_ways<DiskSurface>(WayOut::own);
+  EXPECT_TRUE(is_searched(WayOut::own) && is_searched(WayOut::shared));
+  EXPECT_FALSE(is_searched(WayOut::none) || is_searched(WayOut::sampled));
+}
+
+TEST(MeanOfFive, IsAsHighAsTheMeanOfAParaboloidOverABoxInTheBall) {
+  struct Paraboloid {  // about the z axis, z = -curve (x^2 + y^2) / 2
+    double curve;
+    SurfaceSample sample(Vec3 x) const {
+      const double below = 0.5 * curve * (x.x * x.x + x.y * x.y);
+      const Vec3 foot{x.x, x.y, -below};
+      return {true, x.z + below, normalized_or_zero({curve * x.x, curve * x.y, 1}), foot};
+    }
+  };
+  constexpr double kCurve = 0.5, kRadius = 0.1;
+  TangentPlane plane;
+  ASSERT_TRUE(mean_of_five(Paraboloid{kCurve}, {0, 0, 0.02}, kRadius, 0.9, SampleInTurn{}, plane));
+  EXPECT_NEAR(plane.normal.z, 1, 1e-12);
+  // A cube in the ball has sides of 2 r / sqrt(3), over which x^2 + y^2 is 2 r^2 / 9 in the mean.
+  EXPECT_NEAR(plane.foot.z, -0.5 * kCurve * 2 * kRadius * kRadius / 9,
+              0.03 * 0.5 * kCurve * kRadius * kRadius);
+  EXPECT_FALSE(mean_of_five(Paraboloid{20}, {0, 0, 0.02}, kRadius, 0.9, SampleInTurn{}, plane));
 }
 
 TEST(WholePart, IsACompactCellOnceElseEachOfItsBlocks) {

@@ -240,7 +240,10 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
         const ToolPiece piece = piece_of(level.samples[s]);
         const auto in_ball = measure.sample_piece(piece);
         any_far |= in_ball.is_inside && in_ball.is_far;
-        if (in_ball.is_inside) measure.add(piece, in_ball, measure.surface(), of_each.sum);
+        if (!in_ball.is_inside) continue;
+        const WayOut way = measure.way_out(piece, in_ball, false);
+        measure.push(piece, in_ball, measure.own_normal(way, in_ball), measure.surface(),
+                     of_each.sum);
       }
       if (any_far) continue;
       const CellResult result = measure.run(SamplesTogether{});
@@ -339,8 +342,8 @@ TEST(ClippedSamples, AddUpTogetherAsInTurn) {
     for (const CellSample& sample : samples) {
       bool cuts = false;
       const double inside =
-          weight_behind(BallShape<double>{sample.radius}, plane.normal,
-                        plane.distance(widen(sample.center)), double{sample.weight}, cuts);
+          weight_behind(shape_of(sample), plane.normal, plane.distance(widen(sample.center)),
+                        double{sample.weight}, cuts);
       is_cut |= cuts;
       weight += inside;
       moment += inside * widen(sample.center);

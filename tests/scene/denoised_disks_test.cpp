@@ -242,7 +242,8 @@ TEST(DenoisedDisks, SheetsWithoutThicknessHoldNothing) {
     for (const double z : {-0.01, -0.001, 0.0, 0.001, 0.01}) {
       const Vec3 x{0.003, -0.007, z};
       const SurfaceSample on_surface = disks.sample(x);
-      EXPECT_LT(disks.fraction_inside(on_surface, x, 0.002), 1e-6) << offset << ' ' << z;
+      EXPECT_LT(disks.fraction_inside(on_surface, x, BallShape<double>{0.002}), 1e-6)
+          << offset << ' ' << z;
     }
   }
 }
@@ -267,12 +268,13 @@ TEST(DenoisedDisks, ABallInAPlateIsCutByBothSides) {
     for (Vec3f& n : seen.normals) n.z *= static_cast<float>(side);
     const PreparedPoints cloud(seen);
     const DiskSurface disks = cloud.surface();
+    const BallShape<double> ball{kRadius};
+    const auto below = [&](double height) { return fraction_behind(ball, height, Vec3{}); };
     for (const double z : {-0.004, -0.002, -0.0003, 0.0, 0.001, 0.0025}) {
       const Vec3 x{0.0011, -0.0023, z};
-      const double between =
-          ball_fraction_inside((z - kHalf) / kRadius) - ball_fraction_inside((z + kHalf) / kRadius);
-      EXPECT_NEAR(disks.fraction_inside(disks.sample(x), x, kRadius),
-                  side > 0 ? between : 1 - between, 1e-6);
+      const double between = below(z - kHalf) - below(z + kHalf);
+      EXPECT_NEAR(disks.fraction_inside(disks.sample(x), x, ball), side > 0 ? between : 1 - between,
+                  1e-6);
     }
   }
 }

@@ -30,13 +30,13 @@ class CellClassifier {
     BallClass in_ball;
     if (tells) in_ball = work_.surface.classify_ball(center, group.ball.reach);
     if (tells && in_ball.side == Side::free) {
-      work_.states.set(group.ball, CellClass::free, FloodState::closed);
+      work_.states.set(group.ball, ClusterClass::free);
       return;
     }
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const CellCluster& part = work_.level.cluster(root);
       if (tells && is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.reach))
-        work_.states.set(part, CellClass::free, FloodState::closed);
+        work_.states.set(part, ClusterClass::free);
       else
         classify(root);
     }
@@ -95,16 +95,9 @@ class CellClassifier {
     const Vec3 center = work_.to_surface * view.center;
     const BallClass in_ball = work_.surface.classify_ball(center, view.reach);
     const Side side = side_of(work_.surface, in_ball, center, view.reach);
-    if (side == Side::free) {
-      work_.states.set(i, CellClass::free, FloodState::closed);
-    } else if (side == Side::behind) {
-      work_.states.set(i, CellClass::whole, FloodState::unknown);
-    } else if (side == Side::no_surface) {
-      work_.states.set(i, CellClass::no_surface, FloodState::unknown);
-    } else {
-      work_.states.results[i] = work_.measure_of(view).run(samples, in_ball.point);
-      take_result(i, FloodState::unknown);
-    }
+    if (side != Side::ambiguous) return work_.states.set(i, side);
+    work_.states.results[i] = work_.measure_of(view).run(samples, in_ball.point);
+    take_result(i, FloodState::unknown);
   }
 
   // Classifies the cells of a cluster that is cut by one plane. A node wholly on one side of the
@@ -120,12 +113,12 @@ class CellClassifier {
       const PlaneSide side = side_of_plane(plane.distance(part.center),
                                            part.reach + kRounding * work_.tool_radius.length);
       if (side == PlaneSide::before) {
-        work_.states.set(part, CellClass::free, FloodState::closed);
+        work_.states.set(part, ClusterClass::free);
         node = next;
       } else if (side == PlaneSide::behind &&
                  !may_hold_free(work_.surface, in_ball, work_.to_surface * part.center,
                                 part.reach)) {
-        work_.states.set(part, CellClass::uniform, FloodState::planar);
+        work_.states.set(part, CellClass::uniform, flood_state_of(ClusterClass::cut));
         node = next;
       } else {
         if (next == node + 1) {
@@ -146,16 +139,16 @@ class CellClassifier {
                      view.reach) == Side::free;
     });
     if (side == PlaneSide::before) {
-      work_.states.set(i, CellClass::free, FloodState::closed);
+      work_.states.set(i, Side::free);
     } else if (side == PlaneSide::behind) {
-      work_.states.set(i, CellClass::uniform, FloodState::planar);
+      work_.states.set(i, CellClass::uniform, flood_state_of(ClusterClass::cut));
     } else {
       CellResult& result = work_.states.results[i];
       result = {};
       const CellMeasure measure = work_.measure_of(view);
       for (std::uint32_t b = view.begin; b < view.end; ++b)
         measure.add_block(b, plane, SamplesOnHost<Surface>::clipped, result);
-      take_result(i, FloodState::planar);
+      take_result(i, flood_state_of(ClusterClass::cut));
     }
   }
 

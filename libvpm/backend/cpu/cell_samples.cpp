@@ -4,6 +4,7 @@
 
 #include "libvpm/core/lanes.h"
 #include "libvpm/core/vec3x4.h"
+#include "libvpm/scene/piece_shape.h"
 
 namespace vpm {
 namespace {
@@ -64,7 +65,8 @@ std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const FourSamples four = sample_at(surface, x);
-    const Mask4 reached = four.known & (four.distance < radius);
+    const Mask4 reached =
+        four.known & (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
     if (!any(reached)) continue;
     for (int k = 0; k < kFour && first + k < count; ++k) {
       if (reached[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
@@ -97,10 +99,10 @@ ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const Double4 weight{a.weight, b.weight, c.weight, d.weight};
     const Double4 distance = dot(plane.normal, center) + plane.height;
-    if (!any(distance < radius)) continue;
+    const PieceShape<Double4> shape{radius};
+    if (!any(distance < shape.reach_toward(plane.normal))) continue;
     Mask4 is_cut{};
-    Double4 inside =
-        weight_behind(BallShape<Double4>{radius}, plane.normal, distance, weight, is_cut);
+    Double4 inside = weight_behind(shape, plane.normal, distance, weight, is_cut);
     any_cut |= is_cut;
     for (std::uint32_t k = count - first; k < kFour; ++k) inside[k] = 0;
     FourRows& row = rows[first / kFour % std::size(rows)];

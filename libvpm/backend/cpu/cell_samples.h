@@ -89,6 +89,7 @@ class SamplesTogether {
     if (direction_count_ == 0) return;
     Vec3 normals[kAtOnce];
     closest_normals(measure.surface(), {searched_, direction_count_}, normals);
+    static_assert(!HasOtherWalls<DepthSurface>);  // push() divides none
     for (std::uint32_t k = 0; k < pushed_count_; ++k) {
       measure.add_pushed(piece_of(*pushed_[k].sample), normals[pushed_[k].direction], result.sum);
     }
@@ -104,9 +105,8 @@ class SamplesTogether {
     const ToolPiece piece = piece_of(samples[k]);
     const typename Measure::PieceSample sampled = measure.sample_of(piece, at.x, at.on_surface);
     if (!measure.note(piece, sampled, result)) return;
-    if (!Measure::shares_direction(piece, sampled)) {
-      measure.add_pushed(measure.part_behind(piece, sampled), sampled.on_surface.normal,
-                         result.sum);
+    if (Measure::way_out(piece, sampled, true) != WayOut::shared) {
+      measure.push(piece, sampled, {}, measure.surface(), result.sum);
       return;
     }
     if (neighbors_ != neighbors_of(k)) {

@@ -86,20 +86,13 @@ struct CellStates {
               flood_state);
   }
 
-  // Notes the class of a cluster, or of a part of one, that is neither cut nor uniform.
+  // Notes the class of a cluster, or of a part of one, that is neither ambiguous nor planar.
   void set(const CellCluster& cluster, ClusterClass found) {
-    switch (found) {
-      case ClusterClass::no_surface:
-        return set(cluster, CellClass::no_surface, FloodState::unknown);
-      case ClusterClass::by_middle:
-        return set(cluster, CellClass::no_surface, FloodState::middle);
-      case ClusterClass::behind:
-        return set(cluster, CellClass::whole, FloodState::unknown);
-      case ClusterClass::behind_near:
-        return set(cluster, CellClass::whole, FloodState::near);
-      default:
-        return set(cluster, CellClass::free, FloodState::closed);
-    }
+    set(cluster, class_on_side(side_of_cells(found)), flood_state_of(found));
+  }
+  // Notes the side of a cell that is not ambiguous.
+  void set(std::uint32_t row, Side side) {
+    set(row, class_on_side(side), side == Side::free ? FloodState::closed : FloodState::unknown);
   }
 
   // True if a row counts. Valid once it is decided what is taken.
@@ -140,7 +133,7 @@ struct PoseWork {
   // Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
   // sample at its centre.
   void push(const CellCluster& cluster, std::uint32_t root, const SurfaceSample& middle) const {
-    states.set(cluster, CellClass::uniform, FloodState::near);
+    states.set(cluster, CellClass::uniform, flood_state_of(ClusterClass::uniform));
     states.planes[root].normal = transpose(to_surface.rotation) *
                                  surface.closest_normal(to_surface * cluster.center, middle);
   }

@@ -135,7 +135,7 @@ struct PoseWork {
                              const typename CellMeasure<Surface>::PieceSample& sampled, Vec3 normal,
                              std::uint32_t cell, ToolSum& total) const {
     ToolSum sum;
-    measure.add(piece, sampled, normal, surface, sum);
+    measure.push(piece, sampled, normal, surface, sum);
     if (!sampled.is_far) {
       total.add(sum);
       return;

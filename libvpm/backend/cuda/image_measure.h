@@ -150,14 +150,17 @@ class ImageTaskGroup {
   }
 
   __device__ Counts classify() {
-    switch (class_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
-                             work_.level.tool_radius.length)) {
+    const ClusterClass found = class_of_cluster(work_.surface, shared_.in_ball, shared_.middle,
+                                                cluster_.radius, work_.level.tool_radius.length);
+    switch (found) {
       case ClusterClass::ambiguous:
         return sees_plane() ? classify_clipped() : classify_alone(Side::ambiguous);
       case ClusterClass::uniform:
         return is(BlockTask::is_head) ? Counts::uniform : Counts::not_at_all;
+      case ClusterClass::free:
+        return Counts::not_at_all;
       default:
-        return classify_alone(Side::behind);
+        return classify_alone(side_of_cells(found));
     }
   }
 
@@ -266,7 +269,7 @@ class ImageTaskGroup {
       if (counts != Counts::whole_cell && counts != Counts::whole_block) return false;
       if (turn > 0 || lane_ != 0) return false;
       const BlockMass& mass = counts == Counts::whole_cell ? task_.cell_mass : task_.block_mass;
-      piece = {mass.centroid, 0, mass.weight};
+      piece = {mass.centroid, {}, mass.weight};
     }
     x = work_.to_surface * piece.at;
     return true;
@@ -322,10 +325,10 @@ class ImageTaskGroup {
       if (is_first) {
         sampled = measure.sample_of(piece, x, on_surface);
         is_inside = exists && sampled.is_inside;
-        const bool shares_it = is_inside && is_sample && Measure::shares_direction(piece, sampled);
-        const unsigned sharing = __ballot_sync(~0U, shares_it);
-        if (shares_it) leader = direction_leader(lane, sharing);
-        searches = wants = is_inside && !Measure::is_cut(piece, sampled) && leader == lane;
+        const WayOut way = exists ? Measure::way_out(piece, sampled, is_sample) : WayOut::none;
+        const unsigned sharing = __ballot_sync(~0U, way == WayOut::shared);
+        if (way == WayOut::shared) leader = direction_leader(lane, sharing);
+        searches = wants = is_searched(way) && leader == lane;
         if (wants) search = FootSearch<double>(work_.surface, x, on_surface, beside);
       } else if (wants) {
         search.take(work_.surface, on_surface, beside);

@@ -56,11 +56,7 @@ struct SeenTask {
   __device__ ClusterClass seen() const { return static_cast<ClusterClass>(bits >> 11); }
   __device__ unsigned slot() const { return bits >> 3 & 255U; }
   __device__ unsigned task() const { return bits & 7U; }
-  __device__ Side side() const {
-    return seen() == ClusterClass::ambiguous    ? Side::ambiguous
-           : seen() == ClusterClass::no_surface ? Side::no_surface
-                                                : Side::behind;
-  }
+  __device__ Side side() const { return side_of_cells(seen()); }
 };
 inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;
 static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGroup::kTasks <= 8);
@@ -198,24 +194,22 @@ class TaskMeasure {
     const bool exists = k < task.count;
     const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
     const typename Measure::PieceSample sampled = measure.sample_piece(piece);
-    const bool inside = exists && sampled.is_inside;
-    const bool shares_it =
-        exists && task.form == Task::samples && Measure::shares_direction(piece, sampled);
+    const WayOut way =
+        exists ? Measure::way_out(piece, sampled, task.form == Task::samples) : WayOut::none;
     const unsigned first =
-        Surface::kSearchesFoot ? first_neighbor(subwarp, shares_it) : subwarp.lane;
+        Surface::kSearchesFoot ? first_neighbor(subwarp, way == WayOut::shared) : subwarp.lane;
     Vec3 normal;
-    if (inside && !Measure::is_cut(piece, sampled) && first == subwarp.lane)
-      normal = measure.closest_normal(sampled);
+    if (is_searched(way) && first == subwarp.lane) normal = measure.closest_normal(sampled);
     if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
-    if (!inside) return;
+    if (way == WayOut::none) return;
     measure.note(piece, sampled, result);
     work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
   }
 
   // Returns the first lane that shares a direction with this one; itself if it shares none.
-  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool shares_it) {
-    const unsigned sharing = subwarp.which(shares_it);
-    return shares_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
+  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool shares) {
+    const unsigned sharing = subwarp.which(shares);
+    return shares ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
   }
 
   // Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before

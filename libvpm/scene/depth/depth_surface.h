@@ -6,6 +6,7 @@
 #include "libvpm/scene/body.h"
 #include "libvpm/scene/depth/depth_nearest.h"
 #include "libvpm/scene/depth/depth_sampler.h"
+#include "libvpm/scene/mean_plane.h"
 
 namespace vpm {
 
@@ -15,9 +16,6 @@ struct DepthSurface : DepthSampler {
   // A ray that has passed the surface is inside as far as anybody knows, so places behind it count
   // up to the tool radius without a flood.
   static constexpr bool kTellsInside = true;
-  // Samples about the middle of a ball lie at this part of its radius, where a paraboloid is as
-  // high as its mean over a box in the ball.
-  static constexpr double kRim = 0.5;
 
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
     return sample_and(x, [](std::int32_t, std::int32_t) {});
@@ -176,22 +174,8 @@ struct DepthSurface : DepthSampler {
   template <class SampleAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
                          const SampleAll& sample_all, TangentPlane& plane) const {
-    const SurfaceSample middle = sample_all.middle(*this, center);
-    if (!middle.known) return false;
-    const Vec3 n = middle.normal, below = center - middle.distance * n;
-    const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis_aside(n))),
-               other = cross(n, side);
-    const Vec3 places[] = {below + side, below - side, below + other, below - other};
-    Vec3 direction = n, feet = middle.foot;
-    const auto take = [&](const SurfaceSample& on_surface) {
-      if (!on_surface.known || dot(on_surface.normal, n) < kSmoothCosine) return false;
-      direction += on_surface.normal;
-      feet += on_surface.foot;
-      return true;
-    };
-    if (!sample_all(*this, places, take)) return false;
-    plane = {normalized_or_zero(direction), 0.2 * feet};
-    return shows(in_ball, plane, tolerance);
+    return mean_of_five(*this, center, radius, kSmoothCosine, sample_all, plane) &&
+           shows(in_ball, plane, tolerance);
   }
   // Bounds the distance, m, from any place in a classified ball to the foot of its sample.
   VPM_HD double largest_gap(const BallClass& in_ball, Vec3 center, double radius) const {
@@ -200,8 +184,9 @@ struct DepthSurface : DepthSampler {
     return (farthest - quotient(1, in_ball.range.high)) * quotient(norm(center) + radius, nearest);
   }
 
-  static VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) {
-    return ball_fraction_inside(on_surface.distance / radius);
+  template <class Shape>
+  static VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, const Shape& shape) {
+    return fraction_behind(shape, on_surface.distance, on_surface.normal);
   }
 
  private:

@@ -81,13 +81,15 @@ struct DiskSurface {
     return {true, distance, own.normal, own.foot, i};
   }
 
-  // Returns the part of a ball about x that is behind the surface sampled there.
-  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3 x, double radius) const {
-    if (!knows_second(on_surface.point)) return ball_fraction_inside(on_surface.distance / radius);
+  // Returns the part of a piece about x that is behind the surface sampled there.
+  template <class Shape>
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3 x, const Shape& shape) const {
+    if (!knows_second(on_surface.point))
+      return fraction_behind(shape, on_surface.distance, on_surface.normal);
     const SecondPlane& second = second_at(on_surface.point);
     const TangentPlane own = plane_of(on_surface.point), beyond = second.plane();
-    const double first_inside = ball_fraction_inside(own.distance(x) / radius);
-    const double second_inside = ball_fraction_inside(beyond.distance(x) / radius);
+    const double first_inside = fraction_behind(shape, own.distance(x), own.normal);
+    const double second_inside = fraction_behind(shape, beyond.distance(x), beyond.normal);
     const double cosine = dot(own.normal, beyond.normal);
     return second.is_convex ? fraction_of_both(first_inside, second_inside, cosine)
                             : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
