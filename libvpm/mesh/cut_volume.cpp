@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "libvpm/core/solid_angle.h"
+
 namespace vpm {
 namespace {
 
@@ -12,10 +14,8 @@ namespace {
 // ball in the cone over the part of its triangle inside, plus a sector of the ball over the rest.
 
 double signed_solid_angle(Vec3 a, Vec3 b, Vec3 c) {  // seen from the origin
-  const double la = norm(a), lb = norm(b), lc = norm(c);
-  const double above = dot(a, cross(b, c));
-  const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return above == 0 ? 0 : 2 * std::atan2(above, below);
+  const TriangleAngle angle(a, b, c);
+  return angle.is_flat() ? 0 : angle.value();
 }
 
 // Part in the ball of radius r of the cone from the origin over the triangle (foot, a, b), which

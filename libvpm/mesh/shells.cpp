@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "libvpm/core/solid_angle.h"
 #include "libvpm/mesh/ray_crossings.h"
-#include "libvpm/model/sphere.h"
 
 namespace vpm {
 namespace {
@@ -69,8 +69,8 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
   return shells;
 }
 
-// Returns the winding number of the shell about p, from the solid angles of its triangles (van
-// Oosterom and Strackee 1983); none if p lies on the shell.
+// Returns the winding number of the shell about p, from the solid angles of its triangles, exact;
+// none if p lies on the shell.
 std::optional<double> winding_number(const std::vector<Vec3>& vertices,
                                      const std::vector<Triangle>& triangles, const Shell& shell,
                                      Vec3 p) {
@@ -78,13 +78,11 @@ std::optional<double> winding_number(const std::vector<Vec3>& vertices,
   for (const std::uint32_t t : shell.triangles) {
     const Vec3 a = vertices[triangles[t][0]] - p, b = vertices[triangles[t][1]] - p,
                c = vertices[triangles[t][2]] - p;
-    const double la = norm(a), lb = norm(b), lc = norm(c);
-    const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    const double half = std::atan2(dot(a, cross(b, c)), below);
-    if (std::abs(half) > (1 - kFlat) * kPi) return std::nullopt;
-    angle += 2 * half;
+    const double of_triangle = TriangleAngle(a, b, c).value();
+    if (std::abs(of_triangle) > (1 - kFlat) * (kFullSolidAngle / 2)) return std::nullopt;
+    angle += of_triangle;
   }
-  const double number = angle / (4 * kPi);
+  const double number = angle / kFullSolidAngle;
   if (std::abs(number - std::round(number)) > kOnSurface) return std::nullopt;
   return number;
 }

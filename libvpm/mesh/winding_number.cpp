@@ -4,25 +4,21 @@
 #include <array>
 #include <cmath>
 
+#include "libvpm/core/solid_angle.h"
+
 namespace vpm {
 namespace {
 
 // A group counts as a dipole from this multiple of its radius on. The paper's 2 keeps the error of
 // a closed mesh well below the half that decides.
 constexpr double kFarFactor = 2.0;
-constexpr double kFullSolidAngle = 4 * 3.14159265358979323846;
-
 constexpr double kOnTriangle = 1e-12;  // relative to its size; far above rounding
 
-// Returns the signed solid angle of a triangle about the origin (van Oosterom, Strackee 1983).
+// Returns the solid angle of a triangle; 0 on it, where two coinciding triangles that enclose
+// nothing would else count by the signs that rounding chooses.
 double solid_angle(Vec3 a, Vec3 b, Vec3 c) {
-  const double la = norm(a), lb = norm(b), lc = norm(c);
-  const double numerator = dot(a, cross(b, c));
-  const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  // On the triangle, the angle is half of all directions with a sign that rounding would choose;
-  // two coinciding triangles that enclose nothing would then count.
-  if (denominator < 0 && std::abs(numerator) <= kOnTriangle * (la * lb * lc)) return 0;
-  return 2 * std::atan2(numerator, denominator);
+  const TriangleAngle angle(a, b, c);
+  return angle.holds_origin(kOnTriangle) ? 0 : angle.value();
 }
 
 struct Group {
@@ -95,7 +91,7 @@ double WindingNumber::enclosures(Vec3 x, Counts counts) const {
       const Vec3 to = dipole.center - x;
       const double distance2 = squared_norm(to);
       if (distance2 > dipole.far2) {
-        sum += dot(dipole.area, to) / (distance2 * std::sqrt(distance2));
+        sum += dipole_angle(dipole.area, to, distance2);
       } else if (count == 0) {
         stack[top++] = child;
       } else {

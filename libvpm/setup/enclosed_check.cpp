@@ -1,15 +1,11 @@
 #include "libvpm/setup/enclosed_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
+#include "libvpm/core/solid_angle.h"
+
 namespace vpm {
-namespace {
-
-constexpr double kFullTurn = 4 * kPi;  // the solid angle of all directions
-
-}  // namespace
 
 PointWinding::PointWinding(const Cloud& cloud) : origin_(cloud.origin) {
   constexpr std::size_t kMostPoints = 2000;
@@ -28,9 +24,9 @@ double PointWinding::at(Vec3 place) const {
     const Vec3 to = dipole.place - from;
     // A disk that is near fills a part of the view only.
     const double squared = dot(to, to) + norm(dipole.area);
-    sum += dot(dipole.area, to) / (squared * std::sqrt(squared));
+    sum += dipole_angle(dipole.area, to, squared);
   }
-  return sum / kFullTurn;
+  return sum / kFullSolidAngle;
 }
 
 void EnclosedCheck::see(const Pose& pose, std::size_t k, const Result& result) {
