@@ -1,3 +1,4 @@
+// Axis-aligned bounding boxes of points in double precision.
 #pragma once
 
 #include <algorithm>

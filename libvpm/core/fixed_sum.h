@@ -13,10 +13,11 @@
 
 namespace vpm {
 
+// Holds a sum of terms, counted in units of 2^-Bits.
 template <int Bits>
 struct FixedSum {
   static constexpr double kOne = static_cast<double>(std::int64_t{1} << Bits);
-  std::int64_t value = 0;
+  std::int64_t value = 0;  // the sum times 2^Bits
 
   friend constexpr bool operator==(const FixedSum&, const FixedSum&) = default;
 

@@ -1,4 +1,4 @@
-// What all handles of the public headers do once they were moved from.
+// Refuses handles of the public headers that were moved from, with one message for all of them.
 #pragma once
 
 #include <string>

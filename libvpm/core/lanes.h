@@ -1,7 +1,6 @@
 // SIMD vectors in the extension that GCC and Clang share, and functions compiled for several CPUs.
-// Each lane computes by IEEE 754, whatever
-// vectors the CPU has, so results do not depend on it. They serve loops whose sums compilers do not
-// keep in registers. Not for device code.
+// Each lane computes by IEEE 754 whatever vectors the CPU has, so results do not depend on the CPU.
+// Loops use them whose sums compilers do not keep in registers. Not for device code.
 //
 // Functions that take or return vectors must be inlined (always_inline, which also holds without
 // optimisation): clones for other CPUs would pass vectors by another calling convention.
@@ -23,8 +22,8 @@
 
 namespace vpm {
 
-// Number of lanes of a vector of floats; a vector of doubles has half as many. Wide vectors serve
-// long rows.
+// Number of lanes of Floats and of WideFloats; Doubles, of the size of Floats, has half as many
+// lanes. Wide vectors serve long rows of an image.
 inline constexpr int kLanes = 8, kWideLanes = 16;
 
 using Floats = float __attribute__((vector_size(32)));
@@ -35,6 +34,7 @@ using WideInts = std::int32_t __attribute__((vector_size(64)));
 using WideUnsigned = std::uint32_t __attribute__((vector_size(64)));
 using HalfFloats = float __attribute__((vector_size(16)));
 
+// Returns the numbers at `from`, which need not be aligned, as a vector.
 template <class Vector, class Number>
 [[gnu::always_inline]] inline Vector load(const Number* from) {
   Vector vector;
@@ -43,6 +43,7 @@ template <class Vector, class Number>
   return vector;
 }
 
+// Writes the lanes of a vector to `to`, which need not be aligned.
 template <class Vector, class Number>
 [[gnu::always_inline]] inline void store(const Vector& vector, Number* to) {
   static_assert(sizeof(vector[0]) == sizeof(Number));

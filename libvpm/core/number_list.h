@@ -16,7 +16,7 @@ inline std::string_view without_plus(std::string_view word) {
   return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
 }
 
-// Returns the whole word as a number, also "+1", "nan" and "inf"; empty if it is none.
+// Returns the word as a number, also "+1", "nan" and "inf"; nothing if any part of it is no number.
 template <class Number>
 std::optional<Number> number_from_text(std::string_view word) {
   word = without_plus(word);
@@ -27,7 +27,8 @@ std::optional<Number> number_from_text(std::string_view word) {
 }
 
 // Returns the numbers of "1,2,3", "1 2 3" or "[1, 2, 3]". Throws Error(invalid_argument), naming
-// the word at fault, if one is none, nothing stands between two commas, or a bracket has no other.
+// the word at fault, if a word is no number, nothing stands between two commas, or a bracket is not
+// closed or not opened.
 std::vector<double> numbers_from_text(const std::string& text);
 
 }  // namespace vpm

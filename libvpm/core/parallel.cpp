@@ -19,6 +19,8 @@
 namespace vpm {
 namespace {
 
+// Returns the cap on the number of TBB's threads, which holds while the object lives; null for
+// none.
 std::unique_ptr<tbb::global_control>& thread_cap() {
   static std::unique_ptr<tbb::global_control> cap;
   return cap;
@@ -74,6 +76,8 @@ struct LoopTask {
   }
 };
 
+// True while this thread owns a ParallelRegion or helps one: regions that it opens then have one
+// thread.
 thread_local bool is_in_region = false;
 
 }  // namespace

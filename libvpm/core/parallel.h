@@ -56,8 +56,10 @@ class ParallelRegion {
     void (*call)(const void* body, std::size_t begin, std::size_t end) = nullptr;
   };
 
-  // Ranges of one part that are not yet taken. Only a thread that took a range may read the loop's
-  // data, which outlive that range only. Aligned to a cache line.
+  // Holds the ranges of one part that no thread has taken yet. A thread may read the loop's data
+  // (body_, count_, grain_) only between taking a range and counting it as done: after the last
+  // range the next loop overwrites them. Aligned to a cache line, so that threads do not wait for
+  // each other.
   class alignas(64) Part {
    public:
     void open(std::uint64_t begin, std::uint64_t end);

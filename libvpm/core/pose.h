@@ -5,22 +5,27 @@
 
 namespace vpm {
 
+// Returns the vector turned by the rotation.
 [[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Rotation& r, Vec3 v) {
   return {dot(r.row0, v), dot(r.row1, v), dot(r.row2, v)};
 }
+// Returns the transpose, which is the inverse of a rotation.
 VPM_HD constexpr Rotation transpose(const Rotation& r) {
   return {{r.row0.x, r.row1.x, r.row2.x},
           {r.row0.y, r.row1.y, r.row2.y},
           {r.row0.z, r.row1.z, r.row2.z}};
 }
+// Returns the rotation that turns by b, then by a.
 VPM_HD constexpr Rotation operator*(const Rotation& a, const Rotation& b) {
   const Rotation columns = transpose(b);
   return transpose(Rotation{a * columns.row0, a * columns.row1, a * columns.row2});
 }
 
+// Returns the place that the pose maps v to.
 [[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Pose& p, Vec3 v) {
   return p.rotation * v + p.translation;
 }
+// Returns the pose that maps by b, then by a.
 VPM_HD constexpr Pose operator*(const Pose& a, const Pose& b) {
   return {a.rotation * b.rotation, a * b.translation};
 }
@@ -51,7 +56,7 @@ inline constexpr double kRotationTolerance = 0.02;
 // Largest deviation that decimal rounding explains, so that no note is printed.
 inline constexpr double kRotationRounding = 1e-5;
 
-// Deviation of rotations computed in double.
+// Largest deviation from an orthonormal matrix that rotations have which were computed in double.
 inline constexpr double kRotationExact = 1e-13;
 
 // Returns the nearest rotation to one that is off by rounding (at most kRotationTolerance); returns

@@ -8,10 +8,11 @@
 
 namespace vpm {
 
+// Tells in which steps coordinates were written.
 struct Coarseness {
-  double farthest = 0;      // the largest coordinate's distance from 0
-  double step = 0;          // difference of neighbouring numbers there
-  bool is_decimal = false;  // they have six digits, or else are floats of 32 bits
+  double farthest = 0;      // largest magnitude of a coordinate, in the unit of the points
+  double step = 0;          // difference of neighbouring numbers at that magnitude, same unit
+  bool is_decimal = false;  // the numbers have six digits; otherwise they are floats of 32 bits
 
   // Returns "floats of 32 bits" or "numbers of six digits".
   const char* numbers() const;

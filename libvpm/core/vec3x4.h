@@ -60,11 +60,12 @@ using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else
   return __builtin_convertvector(mask, Mask4);
 }
 
-// Vec3f by fours.
+// Four three-vectors of float32, one in each lane, as they are loaded.
 struct Vec3fx4 {
   Float4 x, y, z;
 };
 
+// Four three-vectors, one in each lane.
 struct Vec3x4 {
   Double4 x, y, z;
 

@@ -18,8 +18,8 @@ struct WidthOf<double> {
   using Mask = bool;
   using Int = std::int32_t;
   using Index = std::uint32_t;
-  using Place = Vec3;    // computes
-  using Stored = Vec3f;  // is loaded
+  using Place = Vec3;    // what is computed with
+  using Stored = Vec3f;  // what memory holds of it
 };
 
 template <class Real>

@@ -22,6 +22,7 @@ std::string to_pcd(const Cloud& cloud);
 // Writes by the extension of `path`, .ply or .pcd; any other throws Error(invalid_argument).
 // Returns a note if the points are not written in the world.
 Remarks write_points(const std::string& path, const Cloud& cloud);
+// Throws Error(invalid_argument) for a path with another extension, before any work is done.
 void check_points_path(const std::string& path);
 
 }  // namespace vpm

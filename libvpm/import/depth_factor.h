@@ -16,7 +16,7 @@ struct DepthFactor {
   double units_per_metre = 0;  // finite and greater than 0
 };
 
-// Returns the factor in an object of a calibration; empty if there is none that a depth image has.
+// Returns the factor in an object of a calibration; nothing if it has none that depth images use.
 std::optional<DepthFactor> depth_factor_in(const Fields& fields);
 
 // Compares the factor that a file of intrinsics tells with the one that the caller gave, in units

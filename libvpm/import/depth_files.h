@@ -18,9 +18,9 @@ namespace vpm {
 // Depth image as a file stores it; depth_values.h makes metres of it.
 struct RawDepth {
   std::uint32_t width = 0, height = 0;
-  std::vector<float> values;  // row by row from the top; integers as they are
-  bool are_integers = false;  // usually millimetres; floats are usually metres
-  bool are_16_bit = false;    // integers of 16 bits: values may be rotated, swapped or disparities
+  std::vector<float> values;    // row by row from the top; integers as they are
+  bool are_integers = false;    // usually millimetres; floats are usually metres
+  bool are_16_bit = false;      // integers of 16 bits, which may be coded (DepthDecoding)
   bool may_be_swapped = false;  // writers of this format disagree about the order of bytes
   Remarks remarks;
   Remarks unit_remarks;  // about the unit, which are left out where the user tells it
@@ -54,14 +54,15 @@ RawDepth parse_npy_depth(std::span<const std::byte> bytes, const std::string& na
 // Throws Error(refused) for sizes of 0 and more than kMaxPoints pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name);
 
-// Throws Error(refused) if the values, floats, of a compressed image would take more than that.
+// Throws Error(refused) if the floats of a compressed image would take more memory than a file of
+// this many bytes may ask for (file::most_memory).
 void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,
                         const std::string& name);
 
 // Returns the shortest text that reads back as the number, or as the float if it is one.
 std::string number_text(double value);
 
-// Said of a file that goes on after its first image.
+// Remark about a file that goes on after its first image.
 inline constexpr const char* kSeveralImages = "it holds several images; the first is read";
 
 }  // namespace vpm

@@ -24,7 +24,7 @@ std::string full_name(const ExrChannelName& channel);
 std::vector<std::size_t> depth_channels(const std::vector<ExrChannelName>& channels,
                                         const std::string& asked, const std::string& name);
 
-// Returns what a note may say of the channels chosen; empty if there was no choice.
+// Returns the text of a note that names the channels chosen; empty if there were no others.
 std::string words_of_choice(const std::vector<ExrChannelName>& channels,
                             const std::vector<std::size_t>& chosen);
 

@@ -286,7 +286,7 @@ bool are_same(const Candidate& a, const Candidate& b) {
          a.file.height == b.file.height && units(a) == units(b) && a.fault == b.fault;
 }
 
-// Returns the only camera among these, or that of all which are the same; null if they differ.
+// Returns the camera if there is only one, or if all are equal; null if they differ.
 const Candidate* only(const std::vector<const Candidate*>& candidates) {
   const bool are_one = std::ranges::all_of(
       candidates, [&](const Candidate* other) { return are_same(*other, *candidates.front()); });

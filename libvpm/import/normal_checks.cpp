@@ -63,8 +63,9 @@ class Cubes {
   std::vector<Place> places_;
 };
 
-// Returns the number of points whose normals are opposite to the first one's though they continue
-// its surface. Those on the other side of a sheet lie behind the first.
+// Returns the number of points that continue the surface of the first one, but whose normals are
+// opposite to its normal. Points on the other side of a sheet lie behind the first one and do not
+// count.
 std::size_t count_opposite(const Cloud& cloud, std::span<const std::size_t> points) {
   constexpr double kOpposite = -0.5;  // cosine
   constexpr double kLevel = 0.3;      // sine of the angle between surface and connection
@@ -140,7 +141,7 @@ Remarks off_the_surface(const Cloud& cloud, double side, const Cubes& smallest) 
                      "as colours? Give them in the frame of the points, as -1 to 1"}};
 }
 
-// Numbers of normals that face a place and that face away from it.
+// Counts the normals that face a place, and those that face away from it.
 struct Facing {
   std::size_t towards = 0, away = 0;
 };

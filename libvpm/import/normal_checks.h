@@ -19,9 +19,9 @@ Remarks improbable_normals(const Cloud& cloud);
 // sensor would be in the sensor's frame.
 bool are_in_world(const PointSet& points, bool are_flipped);
 
-// Returns a warning if nearly all normals of the points that are seen from the origin face away
-// from it. The sensor was there if the file has a viewpoint, and may have been if all points lie
-// before a camera there; other points are not judged.
+// Returns a warning if nearly all normals face away from the origin, of those points that nothing
+// hides from it. Judges points only where the sensor was at the origin, which a file with a
+// viewpoint says, or may have been there, where all points lie before a camera at the origin.
 Remarks facing_away(const PointSet& points, bool are_flipped);
 
 }  // namespace vpm

@@ -294,7 +294,7 @@ void PcdParser::read_ascii() {
   end_ = cursor_.offset();
 }
 
-// Remarks on what follows the points, such as another file joined to this one.
+// Warns if bytes follow the points, such as another file joined to this one.
 void PcdParser::say_unread() {
   std::string_view rest = bytes_.substr(end_);
   if (header_.encoding == "ascii") rest = file::without_padding(rest);

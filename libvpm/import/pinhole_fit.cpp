@@ -10,7 +10,7 @@ bool is_seen(Vec3 p) {
   return is_finite(p) && p.z > 0;
 }
 
-// Least squares of pixel = focal * slope + centre.
+// Fits pixel = focal * slope + centre by least squares, where slope is x/z or y/z of a point.
 class LineFit {
  public:
   void add(double slope, double pixel) {
@@ -35,7 +35,7 @@ class LineFit {
   double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0, pp_ = 0;
 };
 
-// Fits of a grid's columns as a line of x/z, and of its rows as a line of y/z.
+// Fits a grid's columns as a line over x/z, and its rows as a line over y/z.
 struct GridLines {
   LineFit column_of_x, row_of_y, column_of_y, row_of_x;
   std::size_t seen = 0;

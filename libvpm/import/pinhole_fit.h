@@ -1,4 +1,4 @@
-// Depth images of organised clouds.
+// Finds the pinhole camera that an organised cloud was taken with.
 #pragma once
 
 #include <cmath>

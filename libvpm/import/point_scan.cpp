@@ -28,7 +28,7 @@ struct PointFrame {
   std::optional<Pose> to_world;          // pose of those axes; translation in the file's unit
 };
 
-// Points of a grid in their camera's frame, and the camera.
+// A grid's points in the frame of their camera, and that camera.
 struct OrganisedView {
   PointSet points;
   PinholeFit fit;
@@ -160,7 +160,7 @@ std::string text_of(const Pose& pose) {
   return text;
 }
 
-// Pose of the points' frame that the user or the file tells.
+// The pose of the points' frame that the user or the file tells.
 struct ToldPose {
   std::optional<Pose> pose;  // m
   bool is_viewpoint = false;

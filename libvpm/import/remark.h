@@ -1,4 +1,4 @@
-// Joins what several readers say about a file.
+// Joins the remarks of several readers about a file.
 #pragma once
 
 #include <vpm/remark.h>

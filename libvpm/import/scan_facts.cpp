@@ -22,8 +22,8 @@ std::string size_text(const Camera& camera) {
   return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
 }
 
-// Returns what a principal point says that lies in the middle of an image of another size: that
-// size, and the intrinsics scaled to this image.
+// Returns the text for a principal point that lies in the middle of an image of another size: it
+// names that size, and the intrinsics scaled to this image.
 std::string other_size_text(const Camera& camera) {
   constexpr double kSameShape = 0.02;
   const Intrinsics& k = camera.intrinsics;

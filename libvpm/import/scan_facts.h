@@ -24,7 +24,7 @@ std::string intrinsics_text(const Intrinsics& intrinsics);
 // Returns for example "0.8 m".
 std::string metres_text(double length);
 
-// Returns the range of the measured pixels; empty if there is none.
+// Returns the range of the depths of the measured pixels; nothing if none was measured.
 std::optional<DepthRange> range_of(const DepthImage& depth);
 
 // Returns the facts of a cloud made of an image or points of which `invalid` of `all` were not

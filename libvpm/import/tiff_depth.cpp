@@ -13,7 +13,7 @@
 namespace vpm {
 namespace {
 
-// File in memory that libtiff reads, and what it complained of first.
+// A file in memory that libtiff reads, and the first error that libtiff reported.
 struct TiffSource {
   std::span<const std::byte> bytes;
   std::uint64_t at = 0;

@@ -53,7 +53,7 @@ struct FarPiece {
   std::uint32_t cell = 0;
 };
 
-// Holds the sizes of one query's memory: those of the largest level that it is used with.
+// Holds the sizes of one query's memory, in entries: those of the largest level that uses it.
 struct TeamRoom {
   std::size_t cells = 0, pieces = 0;
 
@@ -86,11 +86,11 @@ struct RefinedSpace {
   PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
-// Lengths of a query's lists; all 0 at its start.
+// Holds the lengths of a query's lists; all are 0 at its start.
 struct RefinedCounters {
-  unsigned hidden = 0;  // cells
-  unsigned far = 0;     // pieces
-  unsigned cut = 0;     // cells, as far as they are listed
+  unsigned hidden = 0;  // cells that another surface may hide
+  unsigned far = 0;     // FarPieces
+  unsigned cut = 0;     // cut cells; 0 until CutCells::list()
 };
 
 // Counts a cell as boundary or inside if the bits just added to its word say so.
@@ -102,6 +102,7 @@ __device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawR
   result.inside += is_inside(before | bits) - is_inside(before);
 }
 
+// Reads a counter anew from memory, since other blocks add to it.
 __device__ inline unsigned read(const unsigned& counter) {
   return *const_cast<const volatile unsigned*>(&counter);
 }
@@ -149,7 +150,7 @@ struct PoseWork {
   }
 };
 
-// Lays out a block's shared memory.
+// Lists noted cells in a block's shared memory, with their words.
 struct NotedList {
   static constexpr unsigned kRoom = 4096;
 
@@ -165,8 +166,10 @@ class NotedCells {
                         NotedList& list)
       : level_(level), notes_(notes), team_(team), list_(list) {}
 
-  // Calls visit(i, word) for the cells with a word, spread over the threads of the team. Blocks
-  // list such cells in turns of neighbouring ones. A list that holds all serves again.
+  // Calls visit(i, word) for the cells whose word is not 0, spread over the threads of the team.
+  // Each block lists its noted cells first, as many as its list holds, and visits them, until it
+  // has gone over all cells. If one list holds them all, later calls visit it without listing
+  // again.
   template <class Visit>
   __device__ void for_each(const Visit& visit) {
     constexpr unsigned kTogether = 8;  // loads in flight
@@ -300,7 +303,7 @@ struct TaskSums {
   bool is_cut = false;
 };
 
-// Sums of one thread in an image's query, and its notes about cells.
+// Adds up what one thread finds in an image's query, and notes which cells it found.
 class ImageSums {
  public:
   __device__ explicit ImageSums(const CellNotes& notes) : notes_(notes) {}

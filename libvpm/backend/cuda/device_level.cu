@@ -7,6 +7,7 @@
 namespace vpm::cuda {
 namespace {
 
+// Block tasks, and the groups that refer to ranges of them.
 template <class SomeTask>
 struct GroupedTasks {
   std::vector<SomeTask> tasks;

@@ -17,6 +17,7 @@ namespace vpm::cuda {
 
 // Lays out a warp's shared memory for the task group at hand.
 struct alignas(16) ImageShared {
+  // What the lanes of a block task tell one another.
   struct OfTask {
     Side cell = Side::free;
     BlockClass block = BlockClass::free;
@@ -24,9 +25,10 @@ struct alignas(16) ImageShared {
     bool may_be_free = false;
     ClipPlane plane;        // set for a cut block
     PixelRectangle pixels;  // the cell's
-    double farthest = 0;
+    double farthest = 0;    // depth of the farthest place of the cell's ball, m
   };
-  // What follows is of the cluster.
+  // The class of the cluster's ball, its middle (surface frame, m), and the surface sampled at the
+  // middle and at four places about it.
   DepthSurface::BallClass in_ball;
   Vec3 middle;
   SurfaceSample on_surface, around[kPlacesAround];
@@ -128,7 +130,8 @@ class ImageTaskGroup {
     }
   }
 
-  // Classifies all balls.
+  // Classifies the balls of cell, block and cluster, one by each of three lanes, and shares what
+  // the other lanes need of them.
   __device__ void classify_balls() {
     const bool is_of_task = lane_ < BlockTask::kBalls;
     const TaskBall ball = is_of_task ? task_.balls[lane_] : cluster_;

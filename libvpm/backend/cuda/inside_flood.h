@@ -85,7 +85,7 @@ class UnionFind {
   std::uint32_t* parents_;
 };
 
-// Stands for the memory of a block where a step needs none.
+// Stands for a block's shared memory where a step needs none.
 struct NoShared {};
 
 // Finishes a query where a camera has seen the surface. The first step has added what is behind it
@@ -138,11 +138,13 @@ __host__ __device__ inline bool is_small(const LevelView& level) {
   return level.count <= kFloodCells && level.edge_count <= kFloodEdges;
 }
 
+// Holds a small level's flood in a block's shared memory.
 struct FloodShared {
   std::uint32_t words[kFloodCells];
-  Edge edges[kFloodEdges];  // from the front: passages, between two cells that the flood may pass
-  unsigned passages, entries;  // numbers of passages, and of entries, by which it may enter and
-                               // which lie at the back
+  // From the front lie the passages, edges between two cells that the flood may pass; from the back
+  // the entries, edges by which it may enter, with the cut cell as `larger`.
+  Edge edges[kFloodEdges];
+  unsigned passages, entries;  // numbers of both
 };
 // Holds what a block needs: its own flood, or the list of noted cells.
 union FloodBlock {
@@ -208,6 +210,7 @@ class Flood {
  private:
   static constexpr unsigned kEdges = 4;  // edges per thread at once: their reads wait together
 
+  // Copies the words of all cells to the block's memory.
   __device__ void bring_to_shared() {
     if (threadIdx.x == 0) shared_.passages = shared_.entries = 0;
     for (std::uint32_t i = threadIdx.x; i < level_.count; i += blockDim.x)
@@ -220,12 +223,13 @@ class Flood {
                       : is_passable(word) && flood_.root(i + 1) == 0;
   }
 
+  // Edges that a thread handles together, and the words of their cells.
   struct Edges {
     Edge edges[kEdges];
     std::uint32_t words[kEdges]
                        [2];  // words of the larger and the smaller cell; 0 where there is no edge
   };
-  // Calls visit(edges) for all edges of the level.
+  // Calls visit(edges) for all edges of the level, spread over the threads of the team.
   template <class Visit>
   __device__ void for_edges(const Visit& visit) const {
     for (std::uint32_t first = team_.thread(); first < level_.edge_count;
@@ -362,6 +366,7 @@ class Flood {
     }
   }
 
+  // Returns this thread's part of the sum over all cells that count.
   __device__ RawResult add_up_cells() {
     RawResult result;
     const auto add = [&](std::uint32_t i, std::uint32_t word) {

@@ -12,6 +12,7 @@
 
 namespace vpm::cuda {
 
+// A ball about a cell, a block or a cluster of the tool.
 struct alignas(32) TaskBall {
   Vec3 center;  // about the tool's centre of mass, m
   double radius = 0;
@@ -44,7 +45,7 @@ struct TaskGroup {
   std::uint32_t begin = 0, end = 0;
 };
 
-// Adds the masses of its block and cell to a block task.
+// A block task with the masses of its block and cell, which a warp loads with it.
 struct WarpTask : BlockTask {
   BlockMass block_mass, cell_mass;
 };
@@ -65,7 +66,7 @@ struct WarpTaskGroups {
                 wide_count = 0;  // groups of wide tasks, which come first; 0 for a large level
 };
 
-// Joins two spheres of the graph, by their indices.
+// An edge of the sphere graph, by the indices of its two spheres.
 struct Edge {
   std::uint32_t larger, smaller;
 };

@@ -8,6 +8,7 @@
 namespace vpm {
 namespace {
 
+// Kinds of a measured disk, by the disks about it; from `smooth` on, windows of alike disks serve.
 enum class DiskKind : std::uint8_t {
   stray,    // hardly any disks about it are alike: on no surface of the cloud
   outlier,  // few disks about it are alike, and others face elsewhere
@@ -19,15 +20,16 @@ inline bool is_smooth(DiskKind kind) {
   return kind >= DiskKind::smooth;
 }
 
-constexpr std::uint32_t kFewOpposite = 5;
-constexpr double kStandsOff = 2;  // radii, from the disks about it
+constexpr std::uint32_t kFewOpposite = 5;  // fewer disks that face back show no second side
+// A disk higher than this above the disks about it, in sampling radii, stands off alone.
+constexpr double kStandsOff = 2;
 // Neighbours are alike if their normals differ by less than 25 degrees (kAlike). A disk is a stray
 // if fewer than kFewTogether neighbours are alike, even within twice the usual distance, and an
 // outlier if fewer than kFewAlike are and too many others are not.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 // Most unlike disks about a disk, as a part of the alike ones.
 constexpr double kUnlikeOfSmooth = 0.1;
-constexpr double kUnlikeOfCalm = 0.02;  // so few may be noise
+constexpr double kUnlikeOfCalm = 0.02;  // in a calm leaf: noise alone turns so few elsewhere
 
 bool is_among_its_like(const Neighborhood& around) {
   return around.unlike <= kUnlikeOfSmooth * around.alike;
@@ -52,7 +54,9 @@ class Smoothing {
         is_calm_(leaf_count()),
         is_beside_(leaf_count()) {}
 
-  // Runs the passes. A pass reads no other disk that it writes.
+  // Runs the passes and returns the kinds of the disks. The work for a disk writes that disk alone
+  // and reads of others only what the pass does not write, so that the order of threads does not
+  // matter.
   std::vector<DiskKind> run() {
     pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_alike(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
@@ -206,13 +210,14 @@ class Smoothing {
   const DiskWindows& windows_;
   DenoisedDisks& result_;
   std::vector<DiskKind> kinds_;
-  std::vector<char> is_calm_, is_beside_;  // one per leaf
-  std::vector<Disk> before_;
+  // Per leaf: hardly any disks about its disks face elsewhere; a leaf near it is not calm.
+  std::vector<char> is_calm_, is_beside_;
+  std::vector<Disk> before_;  // the disks before the last pass
 };
 
-constexpr double kOnePlane = 2;      // radii: largest distance of a plane's disks from it
-constexpr double kApart = 2;         // radii: from either side's plane to the other's middle
-constexpr double kFurther = 2;       // widens windows that hold no smooth disk
+constexpr double kOnePlane = 2;  // radii: largest distance of a plane's disks from it
+constexpr double kApart = 2;    // radii: least distance of one side's middle from the other's plane
+constexpr double kFurther = 2;  // factor by which windows grow that hold no smooth disk
 constexpr double kExplained = 0.85;  // part of the points about a crease that must lie on it
 
 // Denoises disks whose normals were estimated across a crease. Disks on no pair of planes that

@@ -12,7 +12,7 @@
 
 namespace vpm {
 
-// Holds the cones of four nodes: a normal's cosine with the axis is at least `cosine`.
+// Holds four nodes' cones: each normal of a node has at least the cosine `cosine` with its `axis`.
 struct alignas(16) ConeQuad {
   float axis[3][4] = {};
   float cosine[4] = {};
@@ -23,7 +23,7 @@ struct alignas(16) ConeQuad {
   }
 };
 
-// Holds plain pointers to the cones of a tree.
+// Points to the cones of a tree, one per node.
 struct NormalCones {
   const ConeQuad* quads = nullptr;  // node k is entry k % 4 of quad k / 4
 
@@ -190,7 +190,7 @@ struct DiskSurface {
  private:
   static constexpr std::uint32_t kMostOfPatch =
       1024;  // points; with more, asking cell by cell is faster
-  static constexpr std::uint32_t kFewestAside = 3;  // points of a cluster on each side
+  static constexpr std::uint32_t kFewestAside = 3;  // disks in each quarter about the middle
   static constexpr double kSmoothCosine = 0.9;      // as in an image
   // Disks that face elsewhere by more than 60 degrees are of another wall. At 90 noise would decide
   // which disks of a perpendicular wall are.
@@ -198,7 +198,7 @@ struct DiskSurface {
   // Part of a ball's radius whose disks give the mean plane: over these a paraboloid has the mean
   // height that it has over a cube in the ball.
   static constexpr double kMiddle = 0.65;
-  static constexpr double kOffPlane = 0.5;  // part of the tolerance
+  static constexpr double kOffPlane = 0.5;  // largest distance of a disk from it, in tolerances
   // Other walls are searched this many radii to the side, and as many further behind.
   static constexpr double kFurther = 0.85;
   static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
@@ -289,7 +289,8 @@ struct DiskSurface {
     return true;
   }
 
-  // True if the points in a ball show this plane on all sides of a place of it.
+  // True if the disks in a ball show this plane: none lies off it or faces another way, and each of
+  // the four quarters about `middle`, a place of the plane, has enough of them that face its way.
   VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
                     double tolerance) const {
     const Vec3 n = plane.normal;
@@ -348,8 +349,9 @@ class DiskSurface::AroundBall {
     return !points_.is_empty() && norm(x - center_) + radius <= radius_;
   }
 
-  // True if the disk of the surface about the centre's foot, of squared radius 4 `quarter`,
-  // probably holds too many points, by the density in the leaf of a near point.
+  // Estimates whether more points than a list holds may be nearest: those on a disk of the surface
+  // about the foot of the centre, whose squared radius is four times `quarter`, m^2, at the density
+  // of the leaf of a near point.
   VPM_HD bool are_many(std::uint32_t near, double quarter) const {
     const PointBox leaf = surface_.feet.leaf_of(near);
     const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
@@ -381,7 +383,7 @@ VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
                                                 OtherWall& other) const {
   if (!may_meet_other_wall(x, own, point, radius, unlike)) return false;
 #ifdef __CUDA_ARCH__
-  const DiskSurface& near = *this;  // lists would take the memory of many threads
+  const DiskSurface& near = *this;  // each thread of a device would need a list of its own
 #else
   const AroundBall near(*this, x, kFarthestPlace * radius, point);
 #endif

@@ -15,8 +15,9 @@
 
 namespace vpm {
 
+// A disk of the cloud as the sums below read it.
 struct Disk {
-  Vec3 place, normal;
+  Vec3 place, normal;  // centre, about the cloud's origin, m; unit vector into free space
 };
 
 // Limits of the cosine between the normals of two disks.
@@ -50,6 +51,7 @@ struct Neighborhood {
   std::uint32_t count() const { return alike + unlike + opposite.count; }
 };
 
+// A disk, and the ball about it whose disks are summed up.
 struct DiskInBall {
   Disk disk;
   double reach = 0;  // radius of the ball, m
@@ -96,6 +98,7 @@ class DiskWindows {
     const std::uint32_t begin = i / PointTree::kLeafSize * PointTree::kLeafSize;
     return {begin, measured_.feet.end_of_leaf(begin), 0.5 * (low + high), norm(high - low)};
   }
+  // Returns the radius of a disk's window, m; that of wide_window() reaches beyond a crease.
   double window(std::uint32_t i, const DiskLeaf& leaf) const {
     return std::min(kWindow * radii_[i], kLeavesInWindow * leaf.diagonal);
   }
@@ -125,14 +128,18 @@ class DiskWindows {
     return measured_.feet.for_leaves_in_ball(
         center, reach * reach, [&](std::uint32_t begin, std::uint32_t) { return visit(begin); });
   }
+  // Returns the disk nearest to x with a mark above 0, or kNoPoint.
   std::uint32_t nearest_marked(Vec3 x, const PointNumbers& marks) const {
     return measured_.feet.nearest_marked(x, marks);
   }
+  // Fills `disks` with those in a ball. Returns false, with a part of them, if they are more than
+  // `most`.
   bool gather(Vec3 center, double reach, std::uint32_t most, std::vector<Disk>& disks) const {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
   }
-  // Calls gathers(reach) for a ball that is halved until it returns true, kHalvings times at most.
+  // Calls gathers(reach), and halves `reach`, m, as long as it returns false, kHalvings times at
+  // most. Returns the last answer.
   template <class Gathers>
   static bool halve_until(double& reach, const Gathers& gathers) {
     bool all = gathers(reach);
@@ -145,7 +152,8 @@ class DiskWindows {
   std::span<const float> radii_;
 };
 
-// Holds the mean of several planes, through `foot`; `place` is the mean of their disks.
+// Holds the mean of several disks: the plane with their mean normal at their mean height, through
+// `foot`, and the mean `place` of their centres, m.
 struct MeanPlane {
   Vec3 normal, foot, place;
 
@@ -174,7 +182,8 @@ inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlan
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
 }
 
-// Holds scratch and results of a thread that goes over leaves.
+// Holds what a thread that goes over leaves writes: a buffer of disks near the leaf, and the second
+// planes that it found.
 struct LeafWork {
   struct Found {
     std::uint32_t disk;
@@ -184,7 +193,8 @@ struct LeafWork {
   std::vector<Found> found;
 };
 
-// Calls pass(leaf, work) for all leaves in parallel. Numbers what they find in the disks' order.
+// Calls pass(leaf, work) for all leaves in parallel. Second planes are appended to the result in
+// the order of their disks, whatever the threads' order was.
 template <class Pass>
 void for_leaves(const DiskWindows& windows, DenoisedDisks& result, const Pass& pass) {
   constexpr std::uint32_t kGrain = 128 * PointTree::kLeafSize;

@@ -45,7 +45,7 @@ class NodeStack {
   // Room for a tree of 2^22 leaves: three nodes of each quad on the way down, and one more.
   static constexpr int kRoom = 3 * 11 + 1;
 
-  // Returns the key above which a node holds no point nearer than, or as near as, `squared`, m^2.
+  // Returns the largest key of a node that may hold a point within the squared distance, m^2.
   VPM_HD static std::uint64_t last_key(double squared) {
     return (squared < HUGE_VAL ? key_of(squared, 0) : key_of(HUGE_VAL, 0) - 1) | kWhich;
   }
@@ -94,8 +94,8 @@ class NodeStack {
   int size_ = 0;
 };
 
-// Points to a number per point, such as the radius of a ball about it, and the largest per node of
-// their tree.
+// Points to a number for each point, such as the radius of a ball about it, and to the largest of
+// them in each node of the points' tree.
 struct PointNumbers {
   const float* of_points = nullptr;
   const float* of_nodes = nullptr;

@@ -1,4 +1,4 @@
-// Defines the body that points without a camera are.
+// Defines PointsBody, a body of a scene that is made of points without a camera.
 #pragma once
 
 #include <cstddef>

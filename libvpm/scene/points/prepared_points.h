@@ -11,6 +11,7 @@
 
 namespace vpm {
 
+// Points with their tree, their denoised disks, and the cones of the disks' normals.
 class PreparedPoints {
  public:
   // Leaves out a cloud's camera, if it has one. Throws what check_for_queries() throws. Denoising
