@@ -1,19 +1,47 @@
 #include <vpm/level_query.h>
 
+#include <chrono>
+#include <deque>
+#include <string>
+#include <vector>
+
 #include "libvpm/api/handle_access.h"
+#include "libvpm/core/error.h"
 #include "libvpm/query/level_tool_query.h"
 
 namespace vpm {
 
 struct LevelQuery::Impl {
-  Tool tool;  // the query refers to its model
-  LevelToolQuery query;
+  Impl(std::span<const Tool> handles, const QueryOptions& options, const LevelRequest& level,
+       const Scene& scene, const Pose& first_pose)
+      : tools(handles.begin(), handles.end()), request(level) {
+    if (tools.empty()) throw Error(ErrorKind::invalid_argument, "a query needs a tool");
+    for (const Tool& tool : tools) {
+      queries.emplace_back(HandleAccess::held(tool), options, level, HandleAccess::held(scene),
+                           first_pose);
+      together.push_back(&queries.back().query());
+    }
+  }
+
+  LevelToolQuery& query_of(std::size_t tool) {
+    if (tool >= queries.size())
+      throw Error(ErrorKind::invalid_argument, "the query has no tool " + std::to_string(tool));
+    return queries[tool];
+  }
+
+  std::vector<Tool> tools;  // the queries refer to their models
+  LevelRequest request;
+  std::deque<LevelToolQuery> queries;
+  std::vector<ToolQuery*> together;  // those of jobs, which have no deadline
+  double seconds = 0;
 };
 
 LevelQuery::LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
                        const Scene& scene, const Pose& first_pose)
-    : impl_(new Impl{tool, LevelToolQuery(HandleAccess::held(tool), options, request,
-                                          HandleAccess::held(scene), first_pose)}) {}
+    : LevelQuery(std::span(&tool, 1), options, request, scene, first_pose) {}
+LevelQuery::LevelQuery(std::span<const Tool> tools, const QueryOptions& options,
+                       const LevelRequest& request, const Scene& scene, const Pose& first_pose)
+    : impl_(std::make_unique<Impl>(tools, options, request, scene, first_pose)) {}
 LevelQuery::~LevelQuery() = default;
 LevelQuery::LevelQuery(LevelQuery&&) noexcept = default;
 LevelQuery& LevelQuery::operator=(LevelQuery&&) noexcept = default;
@@ -22,28 +50,45 @@ LevelQuery::Impl& LevelQuery::impl() const {
   return held_by(impl_, "LevelQuery");
 }
 
-Result LevelQuery::run(const Scene& scene, const Pose& pose) {
-  return impl().query.run(HandleAccess::held(scene), pose);
+Result LevelQuery::run(const Scene& scene, const Pose& pose, std::size_t tool) {
+  LevelToolQuery& query = impl().query_of(tool);
+  const Result result = query.run(HandleAccess::held(scene), pose);
+  impl().seconds = query.seconds();
+  return result;
 }
 
-std::uint32_t LevelQuery::level() const {
-  return impl().query.query().level().sphere_count;
+void LevelQuery::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
+  if (impl().request.deadline_seconds)
+    throw Error(ErrorKind::invalid_argument, "many jobs have no deadline", {},
+                "leave `deadline_seconds` out, or ask pose by pose");
+  const auto start = std::chrono::steady_clock::now();
+  ToolQuery::run(impl().together, HandleAccess::held(scene), jobs, results);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  impl().seconds = jobs.empty() ? 0 : taken.count() / static_cast<double>(jobs.size());
+}
+
+std::uint32_t LevelQuery::level(std::size_t tool) const {
+  return impl().query_of(tool).query().level().sphere_count;
+}
+
+std::uint32_t LevelQuery::finest_level(std::size_t tool) const {
+  return impl().query_of(tool).finest().sphere_count;
 }
 
 double LevelQuery::seconds() const {
-  return impl().query.seconds();
+  return impl().seconds;
 }
 
-LevelReason LevelQuery::reason() const {
-  return impl().query.reason();
+LevelReason LevelQuery::reason(std::size_t tool) const {
+  return impl().query_of(tool).reason();
 }
 
-std::optional<SceneScale> LevelQuery::scale() const {
-  return impl().query.scale();
+std::optional<SceneScale> LevelQuery::scale(std::size_t tool) const {
+  return impl().query_of(tool).scale();
 }
 
-std::span<const SphereState> LevelQuery::states() const {
-  return impl().query.query().states();
+std::span<const SphereState> LevelQuery::states(std::size_t tool) const {
+  return impl().query_of(tool).query().states();
 }
 
 }  // namespace vpm

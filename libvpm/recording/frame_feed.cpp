@@ -22,10 +22,25 @@ bool same_image_size_and_rays(const Camera& a, const Camera& b) {
 
 }  // namespace
 
+ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options) {
+  if (is_ready_cloud(frame)) {
+    ImportedScan scan;
+    scan.points = read_cloud(frame.path);
+    scan.image = scan.points.sensor;
+    return scan;
+  }
+  ImportOptions of_frame = options;
+  if (frame.camera) of_frame.to_world = frame.camera;
+  return import_scan(file::read_all(frame.path), frame.path, of_frame);
+}
+
 void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
-  ImportOptions options = options_;
-  if (frame.camera) options.to_world = frame.camera;
-  const ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
+  const ImportedScan scan = read_frame(frame, options_);
+  if (is_ready_cloud(frame)) {  // with the normals that it has
+    result.body = AnyBody(scan.points, points_);
+    if (scan.image) result.camera = scan.image->camera;
+    return;
+  }
   result.body = body_of(scan, frame.path);
   result.remarks = scan.remarks;
   if (scan.image) result.camera = scan.image->camera;

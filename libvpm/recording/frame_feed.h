@@ -39,6 +39,10 @@ struct PreparedChange {
   Remarks remarks;     // remarks of the reader about the frame
 };
 
+// Reads a frame's file: images and points of others as `options` say, .vpmc files as they are. The
+// camera's pose comes from the recording where it has one. Throws as import_scan and parse_cloud.
+ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options);
+
 // Reads and prepares frames on the calling thread. Keeps a reference to the recording.
 class FrameReader {
  public:

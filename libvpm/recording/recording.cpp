@@ -87,7 +87,7 @@ void read_list(const fs::path& list, Recording& recording) {
 
 bool is_frame(const fs::path& path) {
   static const std::set<std::string> kKinds{".png",  ".exr", ".pcd", ".ply", ".tif",
-                                            ".tiff", ".pgm", ".pfm", ".npy"};
+                                            ".tiff", ".pgm", ".pfm", ".npy", ".vpmc"};
   return kKinds.contains(file::in_lower_case(path.extension().string()));
 }
 
@@ -188,8 +188,8 @@ void read_folder(const fs::path& folder, double frame_rate, Recording& recording
   if (files.empty()) refuse_if_frames_lie_below(folder);
   if (files.empty())
     refuse("no frames in it", folder.string(),
-           "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd or .ply files, or depth.txt with "
-           "\"time file\" lines");
+           "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd, .ply or .vpmc files, or depth.txt "
+           "with \"time file\" lines");
   const bool timed = std::all_of(files.begin(), files.end(),
                                  [](const fs::path& path) { return time_in(path).has_value(); });
   if (!timed) return number_frames(files, frame_rate, recording);
@@ -302,6 +302,10 @@ void read_intrinsics(const fs::path& path, Recording& recording) {
 }
 
 }  // namespace
+
+bool is_ready_cloud(const RecordedFrame& frame) {
+  return file::in_lower_case(fs::path(frame.path).extension().string()) == ".vpmc";
+}
 
 Recording read_recording(const std::string& path, const RecordingOptions& options) {
   const bool is_folder = fs::is_directory(status_of(path));

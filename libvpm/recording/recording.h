@@ -8,7 +8,7 @@
 //   numbered     files with a number in their names: frame-000460.depth.png (7-Scenes). Their times
 //                are the numbers divided by the frame rate, from 0 for the first
 // In a folder, frames are images (.png, .exr, .tif, .tiff, .pgm, .pfm, .npy) and clouds (.pcd,
-// .ply); if some names contain "depth", only those.
+// .ply, .vpmc); if some names contain "depth", only those.
 #pragma once
 
 #include <optional>
@@ -45,6 +45,9 @@ struct Recording {
   std::optional<PoseGap> camera_gap;  // improbable time without a camera pose, if frames lie in it
   double largest_deviation = 0;       // largest of the camera rotations, before normalisation
 };
+
+// True if the frame is a .vpmc file, which holds its camera and that camera's pose.
+bool is_ready_cloud(const RecordedFrame& frame);
 
 struct RecordingOptions {
   double frame_rate = 30;  // frames per second of numbered frames

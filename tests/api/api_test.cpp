@@ -12,6 +12,7 @@
 #include <vpm/version.h>
 #include <vpm/virtual_coupling.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -292,6 +293,44 @@ TEST(PublicApi, ALevelIsChosenByItsCalibration) {
   };
   EXPECT_EQ(level_for(*levels[0].worst_error), levels[0].spheres);
   EXPECT_EQ(level_for(*levels[1].worst_error), levels[1].spheres);
+}
+
+TEST(PublicApi, LevelsAreChosenForEachOfSeveralTools) {
+  const vpm::Tool large = vpm::build_tool(vpm::pack(cube(false, 2), {.spheres = 80}),
+                                          {.levels = {30}, .calibrate = true});
+  const std::vector<vpm::Tool> tools{tool(), large};
+  vpm::LevelRequest request;
+  request.max_error = std::max(*tool().levels()[0].worst_error, *large.levels()[0].worst_error);
+  const vpm::Scene scene = wall();
+  vpm::LevelQuery query(tools, {}, request, scene, behind(0));
+  const std::vector<vpm::Job> jobs{{behind(0), 1}, {behind(0.03), 0}, {behind(0.01), 1}};
+  std::vector<vpm::Result> together(jobs.size());
+  query.run(scene, jobs, together);
+  EXPECT_GT(query.seconds(), 0);
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    EXPECT_EQ(together[k], query.run(scene, jobs[k].pose, jobs[k].tool)) << k;
+    EXPECT_EQ(query.states(jobs[k].tool).size(), query.level(jobs[k].tool));
+    vpm::LevelQuery alone(tools[jobs[k].tool], {}, request, scene, behind(0));
+    EXPECT_EQ(together[k], alone.run(scene, jobs[k].pose)) << k;
+  }
+  EXPECT_EQ(query.level(0), tool().levels()[0].spheres);
+  EXPECT_EQ(query.finest_level(1), large.levels()[0].spheres);
+  const auto missing = error_of([&] { query.run(scene, behind(0), 2); });
+  ASSERT_TRUE(missing);
+  EXPECT_EQ(missing->kind(), vpm::ErrorKind::invalid_argument);
+}
+
+TEST(PublicApi, JobsHaveNoDeadline) {
+  vpm::LevelRequest request;
+  request.deadline_seconds = 1;
+  const vpm::Scene scene = wall();
+  vpm::LevelQuery query(tool(), {}, request, scene, behind(0));
+  const std::vector<vpm::Job> jobs{{behind(0)}};
+  std::vector<vpm::Result> results(1);
+  const auto error = error_of([&] { query.run(scene, jobs, results); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), vpm::ErrorKind::invalid_argument);
+  EXPECT_GT(query.run(scene, behind(0)).volume, 0);
 }
 
 TEST(PublicApi, ErrorsSayKindPlaceAndRemedy) {

@@ -1,6 +1,7 @@
 #include "tools/common/early_failure.h"
 
 #include <unistd.h>
+#include <vpm/error.h>
 
 #include <cstring>
 #include <exception>
@@ -8,7 +9,6 @@
 #include <string>
 #include <system_error>
 
-#include "libvpm/core/error.h"
 #include "tools/common/error_text.h"
 
 namespace vpm::tools {

@@ -8,7 +8,7 @@ namespace vpm::tools {
 namespace {
 
 // What to write for names of the API for which the running program has no option of the same name.
-constexpr std::array<std::pair<const char*, const char*>, 11> kWords = {{
+constexpr std::array<std::pair<const char*, const char*>, 21> kWords = {{
     {"repair_voxels", "--repair voxel=N"},
     {"pack", "vpm-pack"},
     {"build_tool", "vpm-graph"},
@@ -16,6 +16,16 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kWords = {{
     {"calibrate", "vpm-graph --calibrate"},
     {"levels", "vpm-graph --levels"},
     {"intrinsics", "vpm-normals --intrinsics"},
+    {"axes", "vpm-normals --axes"},
+    {"depth_scale", "vpm-normals --depth-scale"},
+    {"unit", "vpm-normals --unit"},
+    {"decode", "vpm-normals --decode"},
+    {"invalid", "vpm-normals --invalid"},
+    {"range", "vpm-normals --range"},
+    {"along_ray", "vpm-normals --along-ray"},
+    {"channel", "vpm-normals --channel"},
+    {"flip", "vpm-normals --flip"},
+    {"camera_pose", "vpm-normals --camera-pose"},
     {"scale", "vpm-pack --scale"},
     {"weld", "vpm-pack --weld"},
     {"repair", "vpm-pack --repair"},
@@ -55,7 +65,10 @@ std::string in_words_of_tools(const std::string& text,
                                    [&](const auto& entry) { return entry.first == name; });
     const bool is_option = is_name(name) && has_option(option);
     if (is_option || word != kWords.end()) {
-      const std::string replacement = is_option ? option : word->second;
+      std::string replacement = is_option ? option : word->second;
+      // Of options that follow each other, the first names the program.
+      const std::string first_word = replacement.substr(0, replacement.find(' ') + 1);
+      if (said.substr(0, at).ends_with(first_word)) replacement.erase(0, first_word.size());
       said.replace(at, end + 1 - at, replacement);
       at += replacement.size();
     } else {

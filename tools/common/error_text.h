@@ -1,10 +1,10 @@
 // How the executables say what the library throws.
 #pragma once
 
+#include <vpm/error.h>
+
 #include <functional>
 #include <string>
-
-#include "libvpm/core/error.h"
 
 namespace vpm::tools {
 

@@ -1,5 +1,7 @@
 #include "tools/common/import_arguments.h"
 
+#include <vpm/error.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/core/error.h"
 #include "libvpm/core/number_list.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
@@ -44,21 +45,7 @@ bool begins_with_number(const std::string& text) {
       .has_value();
 }
 
-void declare_camera(CLI::App& app, ImportArguments& a) {
-  app.add_option("--intrinsics", a.intrinsics,
-                 "Intrinsics of the camera: fx,fy,cx,cy in pixels, or a file with them (text, ROS "
-                 "camera_info, RealSense, "
-                 "Open3D). An organised PCD needs none")
-      ->join(',')
-      ->type_name("FLOAT")
-      ->option_text("FX,FY,CX,CY or FILE");
-  app.add_option("--camera-pose", a.camera_pose,
-                 "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw, "
-                 "or a file with it (4x4, TUM, "
-                 "JSON)")
-      ->join(',')
-      ->type_name("FLOAT")
-      ->option_text("TX,TY,TZ,QX,QY,QZ,QW or FILE");
+void declare_axes(CLI::App& app, ImportArguments& a) {
   app.add_option("--axes", a.axes,
                  "Axes of that frame: opencv (x right, y down, z forward), opengl (x right, y up, "
                  "z backward) or ros (x forward, "
@@ -179,8 +166,26 @@ void read_pose(const Program& program, const ImportArguments& a, ImportOptions& 
 
 }  // namespace
 
+void declare_camera(CLI::App& app, ImportArguments& a) {
+  app.add_option("--intrinsics", a.intrinsics,
+                 "Intrinsics of the camera: fx,fy,cx,cy in pixels, or a file with them (text, ROS "
+                 "camera_info, RealSense, "
+                 "Open3D). An organised PCD needs none")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("FX,FY,CX,CY or FILE");
+  app.add_option("--camera-pose", a.camera_pose,
+                 "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw, "
+                 "or a file with it (4x4, TUM, "
+                 "JSON)")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("TX,TY,TZ,QX,QY,QZ,QW or FILE");
+}
+
 void declare(CLI::App& app, ImportArguments& a) {
   declare_camera(app, a);
+  declare_axes(app, a);
   declare_values(app, a);
   declare_normals(app, a);
 }

@@ -22,6 +22,8 @@ struct ImportArguments {
 
 // Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, ImportArguments& arguments);
+// Adds only those that say which camera took the images, and where it stood.
+void declare_camera(CLI::App& app, ImportArguments& arguments);
 
 // Returns the values as libvpm takes them, and reads the files that they name; the name of the
 // depth image, if there is one, tells which of a file's cameras is its. Throws

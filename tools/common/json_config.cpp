@@ -1,12 +1,13 @@
 #include "tools/common/json_config.h"
 
+#include <vpm/error.h>
+
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
 #include "libvpm/file/text.h"
 

@@ -1,13 +1,13 @@
 #include "tools/common/number_checks.h"
 
+#include <vpm/error.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <sstream>
 #include <string_view>
-
-#include "libvpm/core/error.h"
 
 namespace vpm::tools {
 namespace {

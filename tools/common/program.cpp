@@ -230,8 +230,10 @@ void Program::refuse_senseless_values() const {
 }
 
 std::string Program::in_words_of_options(const std::string& text) const {
-  return in_words_of_tools(
-      text, [&](const std::string& option) { return app_.get_option_no_throw(option) != nullptr; });
+  return in_words_of_tools(text, [&](const std::string& name) {
+    const CLI::Option* const option = app_.get_option_no_throw(name);
+    return option != nullptr && !option->get_group().empty();  // those that are gone have none
+  });
 }
 
 void Program::print(const char* kind, const std::string& text) const {
@@ -259,7 +261,8 @@ nlohmann::json Program::parameters() const {
   for (const char* name :
        {"device", "threads", "quiet", "verbose", "force",                     // change no result
         "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
-        "mesh", "for-scene", "tool", "cloud", "poses"}) {                     // inputs
+        "mesh", "for-scene", "tool", "cloud", "poses",                        // inputs
+        "camera-poses", "frame-rate"}) {  // of recordings, whose frames know what comes of them
     all.erase(name);
   }
   return all;

@@ -1,10 +1,10 @@
 // Reports of the sizes that a cloud's points resolve.
 #pragma once
 
+#include <vpm/level_query.h>
+
 #include <nlohmann/json.hpp>
 #include <string>
-
-#include "libvpm/query/scene_scale.h"
 
 namespace vpm::tools {
 

@@ -1,12 +1,12 @@
 // vpm-normals: turns a depth image, or another program's cloud, into a cloud with normals (.vpmc).
 
+#include <vpm/error.h>
 #include <vpm/version.h>
 
 #include <chrono>
 #include <cstdio>
 
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
@@ -14,23 +14,29 @@
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
+#include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/normals/arguments.h"
 #include "tools/normals/scan_view.h"
 
 namespace vpm::tools {
 namespace {
 
-struct Arguments {
-  std::string depth, output, report, export_path, view;
-  ImportArguments import;
-};
-
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("depth", a.depth,
                  "Depth image (16-bit PNG, OpenEXR, TIFF, PGM, PFM, NPY) or cloud (PCD, PLY); - is "
-                 "standard input");
-  app.add_option("-o,--output", a.output, "Cloud to write (.vpmc); - is standard output");
+                 "standard input. Or a recording: a folder of such files");
+  app.add_option("-o,--output", a.output,
+                 "Cloud to write (.vpmc); - is standard output. For a recording, the folder of its "
+                 "clouds, for vpm-query --frames");
   declare(app, a.import);
+  app.add_option("--camera-poses", a.camera_poses,
+                 "For a recording, the path of the camera: TUM text or a pose per frame; else "
+                 "NAME.pose.txt beside the frames, or groundtruth.txt");
+  app.add_option("--frame-rate", a.frame_rate,
+                 "Frames per second of a recording whose names have numbers but no times")
+      ->check(number_in(1e-3, 1e6))
+      ->capture_default_str();
   app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
   app.add_option("--export", a.export_path, "Write the points with normals here too: .ply or .pcd");
   app.add_option("--view", a.view,
@@ -42,6 +48,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.depth.empty()) refuse_usage("no depth image is given: name a file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
     refuse_usage("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
+  if (!a.camera_poses.empty())
+    refuse_usage("--camera-poses is for a recording: give one frame's pose by --camera-pose");
   if (!a.export_path.empty()) check_points_path(a.export_path);
   check_files({a.depth},
               {{"--output", a.output, file::Kind::cloud},
@@ -112,6 +120,7 @@ nlohmann::json parameters_of(const Program& program, const ImportOptions& option
 }
 
 void run(const Program& program, const Arguments& a) {
+  if (is_recording(a)) return run_recording(program, a);
   check(a, program.common());
   if (!a.view.empty()) view::check_available();
   const ImportOptions options = import_options(program, a.import, a.depth);
@@ -122,10 +131,7 @@ void run(const Program& program, const Arguments& a) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say_facts(program, name, imported);
-  imported.cloud.provenance = {{"tool", program.name()},
-                               {"version", VPM_VERSION},
-                               {"parameters", parameters_of(program, options)},
-                               {"input_hash", file::content_hash({bytes})}};
+  imported.cloud.provenance = provenance_of(program, options, bytes);
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
   if (!a.export_path.empty())
@@ -134,6 +140,15 @@ void run(const Program& program, const Arguments& a) {
 }
 
 }  // namespace
+
+nlohmann::json provenance_of(const Program& program, const ImportOptions& options,
+                             std::span<const std::byte> bytes) {
+  return {{"tool", program.name()},
+          {"version", VPM_VERSION},
+          {"parameters", parameters_of(program, options)},
+          {"input_hash", file::content_hash({bytes})}};
+}
+
 }  // namespace vpm::tools
 
 int main(int argc, char** argv) {

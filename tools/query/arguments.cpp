@@ -1,9 +1,10 @@
 #include "tools/query/arguments.h"
 
+#include <vpm/error.h>
+
 #include <algorithm>
 #include <limits>
 
-#include "libvpm/core/error.h"
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
@@ -23,9 +24,26 @@ constexpr GoneOption kGone[] = {
     {"--standby-us", "a device no longer stands by between poses, and results are the same"},
 };
 
+// Options that say how the files of frames are read, which is vpm-normals' subject.
+constexpr const char* kOfFrames[] = {"--depth-scale", "--unit",   "--invalid", "--range",
+                                     "--along-ray",   "--decode", "--channel", "--axes",
+                                     "--flip",        "--method", "--window",  "--edge-gate"};
+
+void refuse_option_of_frames(const std::string& name) {
+  throw Error(ErrorKind::invalid_argument, name +
+                                               " is gone from vpm-query: make clouds of the frames "
+                                               "first, by vpm-normals FRAMES -o CLOUDS " +
+                                               name + ", and give --frames CLOUDS");
+}
+
 // Adds the options that earlier versions had; --help does not show them. Parsing one of them throws
 // Error(invalid_argument) that says what to do instead.
 void declare_gone_options(CLI::App& app) {
+  for (const char* const name : kOfFrames)
+    app.add_option_function<std::string>(
+           name, [name](const std::string&) { refuse_option_of_frames(name); })
+        ->expected(0, 1)
+        ->group("");
   for (const GoneOption& gone : kGone) {
     const auto refuse_it = [gone](const std::string&) {
       throw Error(ErrorKind::invalid_argument,
@@ -92,10 +110,11 @@ void declare_motion(CLI::App& app, Arguments& a) {
 }
 
 void declare_frames(CLI::App& app, ReplayArguments& a) {
-  app.add_option("--frames", a.frames,
-                 "Instead of --cloud: folder of depth images with their "
-                 "times (TUM RGB-D, 7-Scenes), or a list "
-                 "of \"time file\" lines; goes with --trajectory");
+  app.add_option(
+      "--frames", a.frames,
+      "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
+      "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
+      "lines; goes with --trajectory");
   app.add_option("--trajectory", a.trajectory,
                  "Path of the tool through the frames, as for --poses");
   app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
@@ -117,7 +136,7 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
                "Frames go back and forth as long as the path lasts; otherwise the last one stays");
   app.add_flag("--realtime", a.realtime,
                "Steps wait for the clock; otherwise as fast as it goes, with the same results");
-  declare(app, a.import);
+  declare_camera(app, a.import);
 }
 
 void declare_outputs(CLI::App& app, Arguments& a) {

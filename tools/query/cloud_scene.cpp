@@ -1,48 +1,35 @@
 #include "tools/query/cloud_scene.h"
 
+#include <vpm/error.h>
+
 #include <chrono>
 #include <utility>
 
-#include "libvpm/cloud/cloud.h"
-#include "libvpm/core/error.h"
 #include "tools/common/error_text.h"
 
 namespace vpm::tools {
 
-namespace {
-
-// Returns the surface of a depth image, which is compared with poses; nothing for points, or for
-// another measure than the refined one.
-std::optional<DepthSurface> measured_surface(const AnyBody& cloud, Measure measure) {
-  const auto* const image = cloud.as<DepthBody>();
-  if (measure != Measure::refined || image == nullptr) return std::nullopt;
-  return image->surface();
-}
-
-}  // namespace
-
 CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
   const std::string& name = setup.arguments.cloud;
-  const Cloud cloud = read_cloud(name);
+  const PointCloud cloud = PointCloud::read(name);
   const auto start = std::chrono::steady_clock::now();
   try {
-    cloud_.emplace(cloud, setup.points);
+    scene_.emplace(Body(cloud, setup.points));
   } catch (const Error& fault) {
     if (!fault.where().empty()) throw;
     throw Error(fault.kind(), fault.problem(), name, fault.hint());
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   prepare_seconds_ = taken.count();
-  checks_.emplace(pointers_to(setup.models), cloud,
-                  measured_surface(*cloud_, setup.options.measure));
-  const Remarks remarks = checks_->remarks();
+  check_.emplace(setup.tools, cloud, setup.options.measure);
+  const Remarks remarks = check_->remarks();
   say(setup.program, remarks);
   has_said_ = !remarks.empty();
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 
 void CloudScene::warn_at_end() const {
-  if (!has_said_) say(setup_.program, checks_->remarks());
+  if (!has_said_) say(setup_.program, check_->remarks());
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {

@@ -1,12 +1,14 @@
 // Scene and poses of the modes that query a cloud.
 #pragma once
 
+#include <vpm/scene.h>
+#include <vpm/setup_check.h>
+
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
-#include "libvpm/scene/any_body.h"
-#include "libvpm/setup/cloud_checks.h"
 #include "tools/query/query_setup.h"
 
 namespace vpm::tools {
@@ -18,18 +20,20 @@ class CloudScene {
   // cloud and tools let doubt.
   explicit CloudScene(QuerySetup& setup);
 
-  const AnyBody& cloud() const { return *cloud_; }
+  const Scene& scene() const { return *scene_; }
+  // Returns the number of the cloud's points.
+  std::size_t points() const { return scene_->bodies().front().points(); }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
   // Shows the answer at a pose of the k-th tool to the checks.
-  void see(const Pose& pose, std::size_t k, const Result& result) { checks_->see(pose, k, result); }
+  void see(const Pose& pose, std::size_t k, const Result& result) { check_->see(pose, result, k); }
   // Says what the poses let doubt, where nothing was said of sizes.
   void warn_at_end() const;
 
  private:
   const QuerySetup& setup_;
-  std::optional<AnyBody> cloud_;
-  std::optional<CloudChecks> checks_;
+  std::optional<Scene> scene_;
+  std::optional<SetupCheck> check_;
   bool has_said_ = false;
   double prepare_seconds_ = 0;
 };

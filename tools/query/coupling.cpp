@@ -2,15 +2,18 @@
 // along a path in a cloud.
 #include "tools/query/coupling.h"
 
+#include <vpm/error.h>
+
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
-#include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/haptics/virtual_coupling.h"
 #include "libvpm/recording/timed_path.h"
+#include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
@@ -33,15 +36,14 @@ double number_from(std::string_view value, const std::string& text) {
 
 // Returns the stiffest contact that the tool can make, N/m. The force grows by stiffness times the
 // cross-section for each metre, and a ball of the tool radius bounds that section.
-double stiffest_contact(const ToolModel& model, double stiffness) {
-  return stiffness * kPi * model.radius * model.radius;
+double stiffest_contact(const Tool& tool, double stiffness) {
+  return stiffness * std::numbers::pi * tool.radius() * tool.radius();
 }
 
 // Returns a warning if the parameters are unstable in a scene of this stiffness (N/m^3), otherwise
 // "".
-std::string coupling_warning(const CouplingParameters& p, const ToolModel& model,
-                             double stiffness) {
-  const double contact = stiffest_contact(model, stiffness);
+std::string coupling_warning(const CouplingParameters& p, const Tool& tool, double stiffness) {
+  const double contact = stiffest_contact(tool, stiffness);
   const double limit = coupling_limits(p).contact_stiffness;
   if (contact <= limit) return "";
   char text[256];
@@ -78,15 +80,15 @@ struct CoupledRun {
 };
 
 // Moves the device along the path and writes a line for each step.
-CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelToolQuery& query,
+CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelQuery& query,
                   CloudScene& scene, std::optional<PoseView>& view, file::Output& output) {
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
-    step.contact = query.run(scene.cloud(), step.tool);
+    step.contact = query.run(scene.scene(), step.tool);
     scene.see(step.tool, 0, step.contact);
     run.seconds.push_back(query.seconds());
-    if (view) view->add(0, step.tool, step.contact, query.query());
+    if (view) view->add(0, step.tool, step.contact, query);
     step.rendered = coupling.advance(step.device, step.contact.wrench);
     step.energy = coupling.energy();
     output.append(coupled_line(step, ""));
@@ -97,8 +99,7 @@ CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelToolQu
 
 }  // namespace
 
-CouplingParameters coupling_from_text(const std::string& text, const ToolModel& model,
-                                      double rate) {
+CouplingParameters coupling_from_text(const std::string& text, const Tool& tool, double rate) {
   CouplingParameters p;
   p.rate = rate;
   const std::array<std::pair<std::string_view, double*>, 4> known{
@@ -118,15 +119,15 @@ CouplingParameters coupling_from_text(const std::string& text, const ToolModel& 
   }
   if (!(p.stiffness > 0 && p.damping > 0)) wrong(text);
   if (p.mass == 0) p.mass = critical_mass(p.stiffness, p.damping);
-  p.gyration = radius_of_gyration(model);
+  p.gyration = tool.gyration();
   validate(p);
   return p;
 }
 
-void note_coupling(const Program& program, const CouplingParameters& parameters,
-                   const ToolModel& model, double stiffness) {
+void note_coupling(const Program& program, const CouplingParameters& parameters, const Tool& tool,
+                   double stiffness) {
   program.note("coupling: " + coupling_note(parameters));
-  const std::string warning = coupling_warning(parameters, model, stiffness);
+  const std::string warning = coupling_warning(parameters, tool, stiffness);
   if (!warning.empty()) program.warn(warning);
 }
 
@@ -153,26 +154,26 @@ std::string coupled_line(const CoupledStep& s, const std::string& frame) {
 
 void run_coupling(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
-  const ToolModel& model = setup.models.front();
+  const Tool& tool = setup.tools.front();
   CloudScene scene(setup);
   PoseReader reader(a.poses);
   file::Output output(a.output);
   const CouplingParameters parameters =
-      coupling_from_text(a.coupling, model, ReplayArguments::kRate);
+      coupling_from_text(a.coupling, tool, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);
   note_lines(setup.program, a.poses, path.path().undefined(), path.path().doubled());
   const Pose first = path.pose(0);
-  LevelToolQuery query(model, setup.options, setup.level, scene.cloud(), first);
+  LevelQuery query(tool, setup.options, setup.level, scene.scene(), first);
   note_scale(setup.program, query);
-  note_coupling(setup.program, parameters, model, setup.options.stiffness);
-  CoupledRun run = follow(path, VirtualCoupling(parameters, model.center_of_mass, first), query,
+  note_coupling(setup.program, parameters, tool, setup.options.stiffness);
+  CoupledRun run = follow(path, VirtualCoupling(parameters, tool.center_of_mass(), first), query,
                           scene, setup.view, output);
   output.finish();
   note_deviation(setup.program, "", reader.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);
-  stats["cloud_points"] = scene.cloud().positions().size();
+  stats["cloud_points"] = scene.points();
   add_level(stats, query);
   write_last_spheres(setup, query, run.last);
   write_stats_and_view(setup, std::move(stats));

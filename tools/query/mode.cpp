@@ -46,19 +46,7 @@ constexpr Row kTable[] = {
     {"--repeat-frames", {no, no, no, yes, no}},
     {"--realtime", {no, no, no, yes, no}},
     {"--intrinsics", {no, no, no, yes, no}},
-    {"--depth-scale", {no, no, no, yes, no}},
-    {"--unit", {no, no, no, yes, no}},
-    {"--invalid", {no, no, no, yes, no}},
-    {"--range", {no, no, no, yes, no}},
-    {"--along-ray", {no, no, no, yes, no}},
-    {"--decode", {no, no, no, yes, no}},
-    {"--channel", {no, no, no, yes, no}},
-    {"--flip", {no, no, no, yes, no}},
     {"--camera-pose", {no, no, no, yes, no}},
-    {"--axes", {no, no, no, yes, no}},
-    {"--method", {no, no, no, yes, no}},
-    {"--window", {no, no, no, yes, no}},
-    {"--edge-gate", {no, no, no, yes, no}},
 };
 
 struct Pair {
@@ -74,7 +62,6 @@ constexpr Pair kExclusive[] = {
     {"--level", "--deadline-us"},
     {"--coherent", "--deadline-us"},
     {"--camera-pose", "--camera-poses"},
-    {"--depth-scale", "--unit"},
 };
 
 struct Need {

@@ -4,9 +4,11 @@
 #include <array>
 #include <set>
 
+#include "libvpm/api/handle_access.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
-#include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/recording/frame_feed.h"
 #include "libvpm/view/pose_path.h"
 
 namespace vpm::tools {
@@ -47,25 +49,25 @@ Vec3 image_up(const Camera& camera) {
 
 }  // namespace
 
-PoseView::PoseView(std::string path, std::span<const ToolModel> models,
-                   std::vector<std::string> names, const QueryOptions& options)
+PoseView::PoseView(std::string path, std::span<const Tool> tools, std::vector<std::string> names,
+                   const QueryOptions& options)
     : path_(std::move(path)),
-      models_(models),
       names_(std::move(names)),
       options_(options),
-      levels_(models.size(), 0) {
+      levels_(tools.size(), 0) {
   view::check_available();
+  for (const Tool& tool : tools) models_.push_back(&HandleAccess::held(tool));
   for (std::string& name : names_) {
     meshes_.push_back(name == "-" ? Solid{} : read_display_mesh(name));
     name = view::shown_name(name);
   }
   std::size_t row = 0;
-  for (const ToolModel& model : models_) row += model.spheres.size() / 4 + 1;
+  for (const ToolModel* model : models_) row += model->spheres.size() / 4 + 1;
   most_steps_ = std::clamp(kStateBytes / row, kFewestSteps, kMostSteps);
 }
 
-void PoseView::add_cloud(const std::string& name, Cloud cloud) {
-  clouds_.emplace_back(view::shown_name(name), std::move(cloud));
+void PoseView::add_cloud(const std::string& name, const PointCloud& cloud) {
+  clouds_.emplace_back(view::shown_name(name), cloud);
 }
 
 void PoseView::set_frames(const std::string& name, const Recording& recording,
@@ -76,32 +78,24 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
 }
 
 void PoseView::add(std::size_t tool, const Pose& pose, const Result& result,
-                   const ToolQuery& query) {
+                   const LevelQuery& query) {
   Answer answer{pose, result, {}};
-  for (const SphereState state : query.states())
+  for (const SphereState state : query.states(tool))
     answer.states.push_back(static_cast<std::uint8_t>(state));
-  levels_[tool] = std::max(levels_[tool], query.level().sphere_count);
+  levels_[tool] = std::max(levels_[tool], query.level(tool));
   if (tool == 0) current_ = {seen_, frame_, {}};
   current_.answers.push_back(std::move(answer));
   if (tool + 1 == models_.size()) keep(std::move(current_));
 }
 
-void PoseView::add_batch(ToolQuery& query, const AnyBody& cloud, std::span<const Pose> poses) {
-  ToolQuery* const only = &query;
-  add_batch(std::span(&only, 1), cloud, poses);
-}
-
-void PoseView::add_batch(std::span<ToolQuery* const> queries, const AnyBody& cloud,
-                         std::span<const Pose> poses) {
+void PoseView::add_batch(LevelQuery& query, const Scene& scene, std::span<const Pose> poses) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (!keeps_next() && k + 1 < poses.size()) {
       ++seen_;
       continue;
     }
-    for (std::size_t t = 0; t < queries.size(); ++t) {
-      const Result result = queries[t]->run(cloud, poses[k]);
-      add(t, poses[k], result, *queries[t]);
-    }
+    for (std::size_t t = 0; t < models_.size(); ++t)
+      add(t, poses[k], query.run(scene, poses[k], t), query);
   }
 }
 
@@ -128,15 +122,15 @@ void PoseView::add_facts(view::Page& page) const {
   std::string summary = options_.measure == Measure::paper ? "paper" : "refined";
   for (std::size_t t = 0; t < models_.size(); ++t)
     summary += ", " + std::to_string(levels_[t]) + " of " +
-               std::to_string(models_[t].spheres.size()) + " spheres";
+               std::to_string(models_[t]->spheres.size()) + " spheres";
   page.set_summary(summary);
   for (std::size_t t = 0; t < models_.size(); ++t) {
-    page.add_fact("tool", names_[t] + maker_of(models_[t].provenance));
+    page.add_fact("tool", names_[t] + maker_of(models_[t]->provenance));
     page.add_fact("level", std::to_string(levels_[t]) + " of " +
-                               std::to_string(models_[t].spheres.size()) + " spheres");
+                               std::to_string(models_[t]->spheres.size()) + " spheres");
   }
   for (const auto& [name, cloud] : clouds_)
-    page.add_fact("cloud", name + maker_of(cloud.provenance));
+    page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance));
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
@@ -147,7 +141,8 @@ void PoseView::add_facts(view::Page& page) const {
 }
 
 std::vector<Camera> PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const {
-  for (const auto& [name, cloud] : clouds_) {
+  for (const auto& [name, handle] : clouds_) {
+    const Cloud& cloud = HandleAccess::held(handle);
     const std::string of = clouds_.size() > 1 ? " of " + name : "";
     if (cloud.sensor) {
       const view::ImageView image{&cloud.sensor->depth, cloud.sensor->camera};
@@ -170,9 +165,7 @@ std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Ste
   std::vector<ImportedScan> scans;
   for (std::size_t k = 0; k < frames.size(); k += every) {
     const RecordedFrame& frame = recording_->frames[frames[k]];
-    ImportOptions options = import_;
-    if (frame.camera) options.to_world = frame.camera;
-    ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
+    ImportedScan scan = read_frame(frame, import_);
     if (!scan.image) {
       page.add_points("measured points of " + view::shown_name(frame.path), scan.points);
       page.add_note("The frames are clouds without a camera: the first one is shown.");
@@ -244,13 +237,14 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
 bool PoseView::are_path(const std::vector<Step>& steps) const {
   if (recording_ != nullptr || options_.coherent) return true;
   std::vector<Vec3> places;
-  for (const Step& step : steps) places.push_back(step.answers[0].pose * models_[0].center_of_mass);
+  for (const Step& step : steps)
+    places.push_back(step.answers[0].pose * models_[0]->center_of_mass);
   return view::is_path(places);
 }
 
 std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
                                bool is_joined) const {
-  const ToolModel& model = models_[tool];
+  const ToolModel& model = *models_[tool];
   std::vector<Pose> poses;
   std::vector<std::uint8_t> bits;
   for (const Step& step : steps) {
@@ -282,15 +276,15 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
 void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
                                const std::vector<Camera>& frame_cameras) const {
   bool has_camera = !frame_cameras.empty(), is_seen = false, touches = false;
-  for (const auto& [name, cloud] : clouds_) has_camera = has_camera || cloud.sensor;
+  for (const auto& [name, cloud] : clouds_) has_camera = has_camera || cloud.camera();
   for (std::size_t k = 0; k < steps.size(); ++k) {
     for (std::size_t t = 0; t < models_.size(); ++t) {
       const Answer& answer = steps[k].answers[t];
-      const Vec3 center = answer.pose * models_[t].center_of_mass;
+      const Vec3 center = answer.pose * models_[t]->center_of_mass;
       touches = touches || answer.result.volume > 0;
       is_seen = is_seen || (!frame_cameras.empty() && sees(frame_cameras[k], center));
       for (const auto& [name, cloud] : clouds_)
-        is_seen = is_seen || (cloud.sensor && sees(cloud.sensor->camera, center));
+        is_seen = is_seen || (cloud.camera() && sees(*cloud.camera(), center));
     }
   }
   if (has_camera && !is_seen)
@@ -309,9 +303,9 @@ void PoseView::write() const {
   title += " in " + (clouds_.empty() ? recording_name_ : clouds_.front().first);
   view::Page page("vpm-query", title);
   page.set_origin(clouds_.empty() ? steps.front().answers[0].pose.translation
-                                  : clouds_.front().second.origin);
+                                  : HandleAccess::held(clouds_.front().second).origin);
   for (const auto& [name, cloud] : clouds_)
-    if (cloud.sensor) page.set_up(image_up(cloud.sensor->camera));
+    if (cloud.camera()) page.set_up(image_up(*cloud.camera()));
   if (recording_ != nullptr) {
     const Pose camera = recording_->frames[steps.front().frame.value_or(0)].camera.value_or(
         import_.to_world.value_or(Pose{}));

@@ -1,15 +1,20 @@
 // vpm-query --view: the poses of a run in their scene, as one page.
 #pragma once
 
+#include <vpm/level_query.h>
+#include <vpm/scene.h>
+#include <vpm/tool.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "libvpm/cloud/cloud.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/query/tool_query.h"
+#include "libvpm/model/solid.h"
 #include "libvpm/recording/recording.h"
 #include "libvpm/view/page.h"
 
@@ -19,24 +24,22 @@ namespace vpm::tools {
 // pose of a long run and the last one, so that its memory and the page stay small.
 class PoseView {
  public:
-  // Reads the meshes from the files of the models, `names`. The models must outlive this. Throws
+  // Reads the meshes from the files of the tools, `names`. The tools must outlive this. Throws
   // Error(unavailable) if this build draws no pages.
-  PoseView(std::string path, std::span<const ToolModel> models, std::vector<std::string> names,
+  PoseView(std::string path, std::span<const Tool> tools, std::vector<std::string> names,
            const QueryOptions& options);
 
   // Adds a cloud to the scene of all poses.
-  void add_cloud(const std::string& name, Cloud cloud);
+  void add_cloud(const std::string& name, const PointCloud& cloud);
   // Makes the frames of a recording the scene. The recording must outlive this.
   void set_frames(const std::string& name, const Recording& recording,
                   const ImportOptions& options);
 
   // Adds the answer of the tool's query to its last pose. Expects the tools in their order.
-  void add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query);
+  void add(std::size_t tool, const Pose& pose, const Result& result, const LevelQuery& query);
   // Adds poses that were answered together. Queries those that are kept, and the last one, again,
   // since a batch leaves no states of spheres.
-  void add_batch(ToolQuery& query, const AnyBody& cloud, std::span<const Pose> poses);
-  void add_batch(std::span<ToolQuery* const> queries, const AnyBody& cloud,
-                 std::span<const Pose> poses);
+  void add_batch(LevelQuery& query, const Scene& scene, std::span<const Pose> poses);
   // Sets the frame of the recording that the next steps see.
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }
 
@@ -72,11 +75,11 @@ class PoseView {
                        const std::vector<Camera>& frame_cameras) const;
 
   std::string path_;
-  std::span<const ToolModel> models_;
+  std::vector<const ToolModel*> models_;
   std::vector<std::string> names_;
   std::vector<Solid> meshes_;  // empty where a model came by a pipe or keeps none
   QueryOptions options_;
-  std::vector<std::pair<std::string, Cloud>> clouds_;
+  std::vector<std::pair<std::string, PointCloud>> clouds_;
   std::string recording_name_;
   const Recording* recording_ = nullptr;
   ImportOptions import_;

@@ -1,5 +1,6 @@
 // Modes of vpm-query that ask one tool at poses in a cloud, one by one or in batches.
 #include "libvpm/file/stream.h"
+#include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
@@ -7,35 +8,41 @@
 namespace vpm::tools {
 namespace {
 
+// Returns the job of each pose for a single tool.
+std::vector<Job> jobs_of(const std::vector<Pose>& poses) {
+  std::vector<Job> jobs;
+  for (const Pose& pose : poses) jobs.push_back({pose, 0});
+  return jobs;
+}
+
 // Queries of one tool and the lines of their results.
 class PoseQueries {
  public:
   PoseQueries(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, file::Output& output)
       : setup_(setup),
-        cloud_(scene.cloud()),
         scene_(scene),
         output_(output),
-        query_(setup.models.front(), setup.options, setup.level, scene.cloud(), first_pose) {}
+        query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
   void ask(const Pose& pose) {
-    const Result result = query_.run(cloud_, pose);
+    const Result result = query_.run(scene_.scene(), pose);
     write(pose, result);
-    if (setup_.view) setup_.view->add(0, pose, result, query_.query());
+    if (setup_.view) setup_.view->add(0, pose, result, query_);
     last_ = pose;
   }
 
   void ask_together(const std::vector<Pose>& poses) {
     std::vector<Result> results(poses.size());
-    query_.run(cloud_, jobs_of(poses), results);
+    query_.run(scene_.scene(), jobs_of(poses), results);
     for (std::size_t k = 0; k < poses.size(); ++k) write(poses[k], results[k]);
-    if (setup_.view) setup_.view->add_batch(query_.query(), cloud_, poses);
+    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
     last_ = poses.back();
   }
 
   // Queries the last pose again, since a batch leaves no states of spheres.
-  void ask_last_again() { query_.run(cloud_, last_); }
+  void ask_last_again() { query_.run(scene_.scene(), last_); }
 
-  const LevelToolQuery& query() const { return query_; }
+  const LevelQuery& query() const { return query_; }
   // Returns the time of each answer, s.
   const std::vector<double>& seconds() const { return seconds_; }
   const Pose& last() const { return last_; }
@@ -43,16 +50,15 @@ class PoseQueries {
  private:
   void write(const Pose& pose, const Result& result) {
     scene_.see(pose, 0, result);
-    output_.append(result_line(seconds_.size(), result, query_.query().level(),
-                               setup_.options.measure, query_.reason(), {}));
+    output_.append(result_line(seconds_.size(), result, query_.level(), setup_.options.measure,
+                               query_.reason(), {}));
     seconds_.push_back(query_.seconds());
   }
 
   QuerySetup& setup_;
-  const AnyBody& cloud_;
   CloudScene& scene_;
   file::Output& output_;
-  LevelToolQuery query_;
+  LevelQuery query_;
   std::vector<double> seconds_;
   Pose last_;
 };
@@ -74,7 +80,7 @@ void run_poses(QuerySetup& setup) {
   scene.warn_at_end();
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
-  stats["cloud_points"] = scene.cloud().positions().size();
+  stats["cloud_points"] = scene.points();
   add_level(stats, queries.query());
   write_last_spheres(setup, queries.query(), queries.last());
   write_stats_and_view(setup, std::move(stats));

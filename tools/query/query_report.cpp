@@ -35,7 +35,7 @@ const char* text_of(LevelReason reason) {
 
 }  // namespace
 
-std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
+std::string result_line(std::size_t pose_index, const Result& r, std::uint32_t level,
                         Measure measure, LevelReason level_reason,
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool) {
@@ -53,7 +53,7 @@ std::string result_line(std::size_t pose_index, const Result& r, const Level& le
   line["boundary"] = r.boundary;
   line["inside"] = r.inside;
   if (r.points) line["points"] = *r.points;
-  line["level"] = level.sphere_count;
+  line["level"] = level;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
   if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);
   return to_line(line);
@@ -82,26 +82,6 @@ nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,
                          {"kept", static_cast<double>(kept) / static_cast<double>(seconds.size())}};
   }
   return stats;
-}
-
-void note_deviation(const Program& program, const std::string& what, double deviation) {
-  if (!(deviation > kRotationRounding)) return;
-  char text[96];
-  std::snprintf(text, sizeof text,
-                "rotations were up to %.2g away from orthonormal and have been normalised",
-                deviation);
-  program.note((what.empty() ? "" : what + ": ") + text);
-}
-
-void note_lines(const Program& program, const std::string& name, std::size_t undefined,
-                std::size_t doubled) {
-  const std::string where = name == "-" ? "standard input" : name;
-  if (undefined > 0)
-    program.note(where + ": poses passed over, since their numbers are not finite or all zero: " +
-                 std::to_string(undefined));
-  if (doubled > 0)
-    program.note(where + ": lines passed over, since they give the line before again: " +
-                 std::to_string(doubled));
 }
 
 }  // namespace vpm::tools

@@ -4,12 +4,12 @@
 #include <vpm/level_query.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "libvpm/query/tool_query.h"
 #include "tools/common/program.h"
 
 namespace vpm::tools {
@@ -26,7 +26,7 @@ std::string to_line(const nlohmann::ordered_json& line);
 // Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the
 // device or the clock, unless a deadline chose the level. `level_reason` is left out if
 // no option chose the level; `tool` is the tool's index among several.
-std::string result_line(std::size_t pose_index, const Result& result, const Level& level,
+std::string result_line(std::size_t pose_index, const Result& result, std::uint32_t level,
                         Measure measure, LevelReason level_reason,
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool = std::nullopt);
@@ -35,14 +35,5 @@ std::string result_line(std::size_t pose_index, const Result& result, const Leve
 // of the queries that kept it. Times of poses and of the scene's preparation are in seconds.
 nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_seconds,
                            std::optional<double> deadline_us);
-
-// Notes that rotations have been normalised, if the deviation is beyond rounding. `what` names the
-// file; "" leaves it out.
-void note_deviation(const Program& program, const std::string& what, double deviation);
-
-// Notes how many lines of a file of poses were skipped since they are undefined, and how many were
-// dropped since they give the line before again.
-void note_lines(const Program& program, const std::string& name, std::size_t undefined,
-                std::size_t doubled);
 
 }  // namespace vpm::tools

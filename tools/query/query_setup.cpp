@@ -1,9 +1,11 @@
 #include "tools/query/query_setup.h"
 
-#include "libvpm/core/error.h"
-#include "libvpm/core/parallel.h"
+#include <vpm/device.h>
+#include <vpm/error.h>
+
+#include <algorithm>
+
 #include "libvpm/file/stream.h"
-#include "libvpm/model/tool_model.h"
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
@@ -24,10 +26,10 @@ LevelRequest level_request(const Arguments& a) {
   return request;
 }
 
-std::vector<ToolModel> read_models(const std::vector<std::string>& names) {
-  std::vector<ToolModel> models;
-  for (const std::string& name : names) models.push_back(read_tool_model(name));
-  return models;
+std::vector<Tool> read_tools(const std::vector<std::string>& names) {
+  std::vector<Tool> tools;
+  for (const std::string& name : names) tools.push_back(Tool::read(name));
+  return tools;
 }
 
 // Returns the CPU for what no device computes (coherent poses, the measure as printed), unless a
@@ -72,17 +74,10 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
     : program(p),
       arguments(a),
       level(level_request(a)),
-      models(read_models(a.tools)),
+      tools(read_tools(a.tools)),
       points(denoising_of(a)) {
-  for (const ToolModel& model : models) model.level(a.level);  // throws if it has no such level
   options = query_options(program, a);
-  if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);
-}
-
-std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models) {
-  std::vector<const ToolModel*> pointers;
-  for (const ToolModel& model : models) pointers.push_back(&model);
-  return pointers;
+  if (!a.view.empty()) view.emplace(a.view, tools, a.tools, options);
 }
 
 void say(const Program& program, const Remarks& remarks) {
@@ -90,22 +85,23 @@ void say(const Program& program, const Remarks& remarks) {
     remark.is_warning ? program.warn(remark.text) : program.note(remark.text);
 }
 
-void note_scale(const Program& program, const LevelToolQuery& query) {
-  if (!query.scale()) return;
-  program.note("the scene resolves " + words_of(*query.scale()) + ": the level of " +
-               std::to_string(query.finest().sphere_count) + " is enough");
+void note_scale(const Program& program, const LevelQuery& query, std::size_t tool) {
+  const std::optional<SceneScale> scale = query.scale(tool);
+  if (!scale) return;
+  program.note("the scene resolves " + words_of(*scale) + ": the level of " +
+               std::to_string(query.finest_level(tool)) + " is enough");
 }
 
-void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last) {
+void write_last_spheres(const QuerySetup& setup, const LevelQuery& query, const Pose& last) {
   const std::string& path = setup.arguments.spheres_out;
   if (path.empty()) return;
-  const std::span<const Sphere> spheres(setup.models.front().spheres.data(),
-                                        query.query().level().sphere_count);
-  write_spheres(path, spheres, query.query().states(), last);
+  std::vector<Sphere> spheres = setup.tools.front().spheres();
+  spheres.resize(query.level());
+  write_spheres(path, spheres, query.states(), last);
 }
 
-void add_level(nlohmann::json& stats, const LevelToolQuery& query) {
-  stats["level"] = query.query().level().sphere_count;
+void add_level(nlohmann::json& stats, const LevelQuery& query) {
+  stats["level"] = query.level();
   if (query.scale()) stats["scene"] = scene_report(*query.scale());
 }
 

@@ -1,23 +1,23 @@
 // Parts of a run that all modes of vpm-query share.
 #pragma once
 
+#include <vpm/level_query.h>
 #include <vpm/remark.h>
+#include <vpm/tool.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
-#include "libvpm/model/tool_model.h"
-#include "libvpm/query/level_tool_query.h"
 #include "tools/query/arguments.h"
 #include "tools/query/pose_view.h"
 
 namespace vpm::tools {
 
-// Models and options that every mode begins with.
+// Tools and options that every mode begins with.
 struct QuerySetup {
-  // Reads the models. The tool and its arguments must outlive this. Throws Error for what the
-  // arguments, the models or the device refuse.
+  // Reads the tools. The program and its arguments must outlive this. Throws Error for what the
+  // arguments, the tools or the device refuse.
   QuerySetup(const Program& program, const Arguments& arguments);
   QuerySetup(const QuerySetup&) = delete;
   QuerySetup& operator=(const QuerySetup&) = delete;
@@ -25,26 +25,23 @@ struct QuerySetup {
   const Program& program;
   const Arguments& arguments;
   LevelRequest level;
-  std::vector<ToolModel> models;  // one per --tool
+  std::vector<Tool> tools;  // one per --tool
   QueryOptions options;
   Denoising points;              // how points without a camera are read
   std::optional<PoseView> view;  // empty without --view
 };
 
-// Returns the models as the checks of a setup take them.
-std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models);
-
 // Prints what the checks of a setup say.
 void say(const Program& program, const Remarks& remarks);
 
-// Notes the level that the scene's points resolve, if --for-scene chose it.
-void note_scale(const Program& program, const LevelToolQuery& query);
+// Notes the level of a tool that the scene's points resolve, if --for-scene chose it.
+void note_scale(const Program& program, const LevelQuery& query, std::size_t tool = 0);
 
 // Writes --spheres-out for the pose that the query answered last.
-void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last);
+void write_last_spheres(const QuerySetup& setup, const LevelQuery& query, const Pose& last);
 
 // Adds the level of a single tool and the scene's scale to the statistics.
-void add_level(nlohmann::json& stats, const LevelToolQuery& query);
+void add_level(nlohmann::json& stats, const LevelQuery& query);
 
 // Adds device, threads and options to the statistics of a run. Writes them to --stats and the page
 // to --view, if these are given.

@@ -1,5 +1,8 @@
 // Mode of vpm-query that moves the tool, or a haptic device that holds it, through recorded frames,
 // step by step.
+#include <vpm/level_query.h>
+#include <vpm/virtual_coupling.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,16 +10,17 @@
 #include <optional>
 #include <string>
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/haptics/virtual_coupling.h"
-#include "libvpm/query/level_tool_query.h"
+#include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/frame_schedule.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
 #include "libvpm/setup/pose_check.h"
 #include "libvpm/setup/size_check.h"
+#include "tools/common/recorded_frames.h"
 #include "tools/query/arguments.h"
 #include "tools/query/coupling.h"
 #include "tools/query/mode.h"
@@ -26,6 +30,11 @@
 
 namespace vpm::tools {
 namespace {
+
+// Returns the scene of one body.
+Scene scene_with(const AnyBody& body) {
+  return HandleAccess::make<Body>(body);
+}
 
 // Path of the tool through a recording.
 class Replay {
@@ -37,12 +46,12 @@ class Replay {
          const Device& device, Denoising points);
 
   const SampledPath& path() const { return path_; }
-  // Returns the first frame that can be used, by which levels are chosen.
-  const AnyBody& first_body() const { return *first_body_; }
+  // Returns the scene of the first frame that can be used, by which levels are chosen.
+  Scene first() const { return scene_with(*first_body_); }
 
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen.
-  void run(LevelToolQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
+  void run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
            Measure measure, file::Output& output, std::optional<PoseView>& view);
 
   // Return what the checks of the setup compare poses and sizes with.
@@ -63,8 +72,6 @@ class Replay {
   nlohmann::json report(double deadline) const;
 
  private:
-  void note_sources() const;
-  void warn_of_improbable_times() const;
   double start_time() const;
   void find_first_body();
   void say(const PreparedChange& change);
@@ -72,8 +79,7 @@ class Replay {
   void say_at_end() const;
   std::string frame_name() const;
   // Returns step k, without rendered wrench and energy if there is no coupling.
-  CoupledStep ask(std::size_t k, LevelToolQuery& query,
-                  std::optional<VirtualCoupling>& coupling) const;
+  CoupledStep ask(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling) const;
 
   const Program& program_;
   const ReplayArguments& arguments_;
@@ -85,6 +91,7 @@ class Replay {
   Denoising points_;
   ScheduleOptions schedule_;
   std::optional<AnyBody> first_body_;
+  std::optional<Scene> scene_;  // the frame that the loop sees
   std::unique_ptr<FrameFeed> feed_;
   std::optional<LoopClock> clock_;
   Pose last_pose_;
@@ -100,18 +107,6 @@ constexpr std::size_t kMostWarnings = 5;
 
 std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
-}
-
-// Warns of a time without poses, across which they are interpolated.
-void warn_of_gap(const Program& program, const std::string& name,
-                 const std::optional<PoseGap>& gap) {
-  if (!gap) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                ": no pose from %.3f to %.3f s, more than ten times as long as from one pose to "
-                "the next elsewhere; poses in between are interpolated",
-                gap->start, gap->end);
-  program.warn(name + text);
 }
 
 SampledPath read_path(const Program& program, const std::string& name, double rate) {
@@ -136,50 +131,13 @@ Replay::Replay(const Program& program, const ReplayArguments& arguments, double 
       import_(import_options(program, arguments.import)),
       device_(device),
       points_(points) {
-  recording_ = read_recording(arguments.frames, recording_options(arguments, import_));
-  if (!import_.intrinsics && recording_.intrinsics) {
-    const IntrinsicsFile& file = *recording_.intrinsics;
-    const std::string name = arguments_.frames + "/camera-intrinsics.txt";
-    import_.intrinsics = file.intrinsics;
-    tools::say(program_, name, file.remarks);
-    tools::say(program_, name, unused_factor(file.factor, import_.depth.units_per_metre));
-    check_intrinsics(*import_.intrinsics);
-    program_.note("intrinsics " + intrinsics_text(*import_.intrinsics) +
-                  " are read from camera-intrinsics.txt in " + arguments_.frames);
-  }
-  note_sources();
-  schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
-  find_first_body();
-}
-
-void Replay::note_sources() const {
-  if (recording_.camera_source.empty()) {
-    program_.note("the camera does not move: " + arguments_.frames +
-                  (import_.to_world ? " is seen from --camera-pose"
-                                    : " has no poses of it, and no --camera-poses are given"));
-  } else {
-    program_.detail("poses of the camera: " + recording_.camera_source);
-  }
-  note_deviation(program_, recording_.camera_source, recording_.largest_deviation);
-  note_lines(program_, recording_.camera_source, recording_.camera_undefined,
-             recording_.camera_doubled);
-  warn_of_gap(program_, recording_.camera_source, recording_.camera_gap);
-  warn_of_improbable_times();
+  recording_ =
+      open_recording(program, arguments.frames, recording_options(arguments, import_), import_);
+  note_recording(program, arguments.frames, recording_, import_);
   if (!recording_.has_clock && path_.path().has_times())
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
-}
-
-void Replay::warn_of_improbable_times() const {
-  constexpr double kShortest = 0.0015, kLongest = 5;  // s
-  if (recording_.frames.size() < 3) return;
-  const double interval = median_interval(recording_.frames);
-  if (interval >= kShortest && interval <= kLongest) return;
-  char apart[32];
-  std::snprintf(apart, sizeof apart, "%.2g", interval);
-  program_.warn(
-      "the frames are " + std::string(apart) + " s apart, as their names or their list " +
-      (recording_.has_clock ? "tell their times" : "number them") +
-      ", which is unusual; if that is wrong, give --frames a list of \"seconds file\" lines");
+  schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
+  find_first_body();
 }
 
 double Replay::start_time() const {
@@ -218,11 +176,11 @@ void Replay::find_first_body() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
-CoupledStep Replay::ask(std::size_t k, LevelToolQuery& query,
+CoupledStep Replay::ask(std::size_t k, LevelQuery& query,
                         std::optional<VirtualCoupling>& coupling) const {
   CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
   step.tool = coupling ? coupling->tool() : step.device;
-  step.contact = query.run(feed_->body(), step.tool);
+  step.contact = query.run(*scene_, step.tool);
   if (coupling) {
     step.rendered = coupling->advance(step.device, step.contact.wrench);
     step.energy = coupling->energy();
@@ -231,6 +189,8 @@ CoupledStep Replay::ask(std::size_t k, LevelToolQuery& query,
 }
 
 SceneSource Replay::source() const {
+  const RecordedFrame& first = recording_.frames.front();
+  if (is_ready_cloud(first)) return source_of(read_cloud(first.path));
   return {.axes = import_.axes, .points_to_world = import_.to_world, .are_frames = true};
 }
 
@@ -239,20 +199,20 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   const RecordedFrame& recorded = recording_.frames[frame];
   ImportOptions options = import_;
   options.depth.looks_for_mistakes = false;
-  if (recorded.camera) options.to_world = recorded.camera;
   try {
-    const ImportedScan scan = import_scan(file::read_all(recorded.path), recorded.path, options);
+    const ImportedScan scan = read_frame(recorded, options);
     return scan.image ? checked_scene(*scan.image) : checked_scene(scan.points);
   } catch (const Error&) {  // it has changed since, or came by a pipe
     return {};
   }
 }
 
-void Replay::run(LevelToolQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
+void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
                  Measure measure, file::Output& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
+  scene_.emplace(scene_with(feed_->body()));
   clock_.emplace(rate_, arguments_.realtime);
   for (std::size_t k = 0; k < path_.steps(); ++k) {
     // A loop that runs ahead of the clock waits for frames that a real stream would have brought in
@@ -260,19 +220,20 @@ void Replay::run(LevelToolQuery& query, PoseCheck& check, std::optional<VirtualC
     const PreparedChange* change = arguments_.realtime ? nullptr : feed_->advance_to(k);
     clock_->begin_step();
     if (arguments_.realtime) change = feed_->advance_to(k);
+    if (change) scene_.emplace(scene_with(feed_->body()));
     const CoupledStep step = ask(k, query, coupling);
     clock_->end_step();
     last_pose_ = step.tool;
     query_seconds_.push_back(query.seconds());
     if (view) view->see_frame(feed_->frame());
-    if (view) view->add(0, step.tool, step.contact, query.query());
+    if (view) view->add(0, step.tool, step.contact, query);
     if (feed_->frame()) check.see(step.tool, 0, step.contact, *feed_->frame());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     if (change && !sizes_differ_) compare_size(*change);
     output.append(coupling ? coupled_line(step, frame_name())
-                           : result_line(k, step.contact, query.query().level(), measure,
-                                         query.reason(), StepOfReplay{step.time, frame_name()}));
+                           : result_line(k, step.contact, query.level(), measure, query.reason(),
+                                         StepOfReplay{step.time, frame_name()}));
   }
   wall_seconds_ = clock_->seconds();
   say_at_end();
@@ -341,10 +302,10 @@ nlohmann::json Replay::report(double deadline) const {
 }
 
 // Returns the parameters of --coupling, if it is given.
-std::optional<CouplingParameters> coupling_of(const Arguments& a, const ToolModel& model) {
+std::optional<CouplingParameters> coupling_of(const Arguments& a, const Tool& tool) {
   if (a.coupling.empty()) return std::nullopt;
   const double rate = a.replay.rate.value_or(ReplayArguments::kRate);
-  const CouplingParameters parameters = coupling_from_text(a.coupling, model, rate);
+  const CouplingParameters parameters = coupling_from_text(a.coupling, tool, rate);
   if (a.replay.rate && rate != parameters.rate)
     throw Error(ErrorKind::invalid_argument,
                 "--rate and the rate of --coupling differ; give one of them");
@@ -355,21 +316,21 @@ std::optional<CouplingParameters> coupling_of(const Arguments& a, const ToolMode
 
 void run_frames(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
-  const ToolModel& model = setup.models.front();
-  const std::optional<CouplingParameters> parameters = coupling_of(a, model);
+  const Tool& tool = setup.tools.front();
+  const std::optional<CouplingParameters> parameters = coupling_of(a, tool);
   const double rate =
       parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
   Replay replay(setup.program, a.replay, rate, setup.options.device, setup.points);
   const Pose first = replay.path().pose(0);
-  LevelToolQuery query(model, setup.options, setup.level, replay.first_body(), first);
+  LevelQuery query(tool, setup.options, setup.level, replay.first(), first);
   note_scale(setup.program, query);
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
-    note_coupling(setup.program, *parameters, model, setup.options.stiffness);
-    coupling.emplace(*parameters, model.center_of_mass, first);
+    note_coupling(setup.program, *parameters, tool, setup.options.stiffness);
+    coupling.emplace(*parameters, tool.center_of_mass(), first);
   }
   file::Output output(a.output);
-  const std::vector<const ToolModel*> tools = pointers_to(setup.models);
+  const std::vector<const ToolModel*> tools{&HandleAccess::held(tool)};
   const std::optional<Remark> sizes = improbable_sizes(tools, replay.first_scene(), true);
   if (sizes) say(setup.program, {*sizes});
   PoseCheck check(tools, replay.source(),

@@ -1,9 +1,10 @@
 // Mode of vpm-query that asks every tool at every pose in a cloud.
 #include <chrono>
-#include <deque>
+#include <cstdint>
 #include <span>
 
 #include "libvpm/file/stream.h"
+#include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
@@ -15,25 +16,23 @@ namespace {
 class SeveralTools {
  public:
   SeveralTools(QuerySetup& setup, CloudScene& scene, const Pose& first_pose)
-      : setup_(setup), cloud_(scene.cloud()), scene_(scene) {
-    for (const ToolModel& model : setup.models) {
-      queries_.emplace_back(model, setup.options, setup.level, cloud_, first_pose);
-      together_.push_back(&queries_.back().query());
-    }
-    for (const LevelToolQuery& query : queries_) note_scale(setup.program, query);
+      : setup_(setup),
+        scene_(scene),
+        tools_(setup.tools.size()),
+        query_(setup.tools, setup.options, setup.level, scene.scene(), first_pose) {
+    for (std::size_t tool = 0; tool < tools_; ++tool) note_scale(setup.program, query_, tool);
   }
 
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
   void ask(std::span<const Pose> poses, file::Output& output) {
     const std::vector<Result> results = timed_results(poses);
-    const std::size_t tools = queries_.size();
     for (std::size_t k = 0; k < results.size(); ++k) {
-      const std::size_t tool = k % tools;
-      scene_.see(poses[k / tools], tool, results[k]);
-      output.append(result_line(poses_asked_ + k / tools, results[k], together_[tool]->level(),
-                                setup_.options.measure, queries_[tool].reason(), {}, tool));
+      const std::size_t tool = k % tools_;
+      scene_.see(poses[k / tools_], tool, results[k]);
+      output.append(result_line(poses_asked_ + k / tools_, results[k], query_.level(tool),
+                                setup_.options.measure, query_.reason(tool), {}, tool));
     }
-    if (setup_.view) setup_.view->add_batch(together_, cloud_, poses);
+    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
     poses_asked_ += poses.size();
   }
 
@@ -43,7 +42,7 @@ class SeveralTools {
   // Returns the number of spheres of each tool's level.
   std::vector<std::uint32_t> levels() const {
     std::vector<std::uint32_t> levels;
-    for (const ToolQuery* query : together_) levels.push_back(query->level().sphere_count);
+    for (std::size_t tool = 0; tool < tools_; ++tool) levels.push_back(query_.level(tool));
     return levels;
   }
 
@@ -51,14 +50,14 @@ class SeveralTools {
   std::vector<Result> timed_results(std::span<const Pose> poses) {
     std::vector<Job> jobs;
     for (const Pose& pose : poses)
-      for (std::uint32_t t = 0; t < queries_.size(); ++t) jobs.push_back({pose, t});
+      for (std::uint32_t t = 0; t < tools_; ++t) jobs.push_back({pose, t});
     std::vector<Result> results(jobs.size());
     const auto start = std::chrono::steady_clock::now();
     if (poses.size() == 1) {  // the whole device answers each sooner
-      for (std::size_t t = 0; t < queries_.size(); ++t)
-        results[t] = together_[t]->run(cloud_, poses.front());
+      for (std::size_t t = 0; t < tools_; ++t)
+        results[t] = query_.run(scene_.scene(), poses.front(), t);
     } else {
-      ToolQuery::run(together_, cloud_, jobs, results);
+      query_.run(scene_.scene(), jobs, results);
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     seconds_.insert(seconds_.end(), results.size(),
@@ -67,10 +66,9 @@ class SeveralTools {
   }
 
   QuerySetup& setup_;
-  const AnyBody& cloud_;
   CloudScene& scene_;
-  std::deque<LevelToolQuery> queries_;
-  std::vector<ToolQuery*> together_;
+  std::size_t tools_;
+  LevelQuery query_;
   std::size_t poses_asked_ = 0;
   std::vector<double> seconds_;
 };
@@ -90,7 +88,7 @@ void run_several_tools(QuerySetup& setup) {
   note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
-  stats["cloud_points"] = scene.cloud().positions().size();
+  stats["cloud_points"] = scene.points();
   stats["levels"] = tools.levels();
   write_stats_and_view(setup, std::move(stats));
 }

@@ -35,5 +35,7 @@ VPM_API Device device_from_text(const std::string& text);
 // Caps the threads of all later work of the process; 0 means one per core. Changes no result. Not
 // thread-safe: to be called once, before other work.
 VPM_API void set_thread_count(int threads);
+// Returns that cap, or the number of cores. Thread-safe.
+VPM_API int thread_count();
 
 }  // namespace vpm

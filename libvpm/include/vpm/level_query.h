@@ -4,6 +4,8 @@
 #include <vpm/error.h>
 #include <vpm/query.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -56,24 +58,34 @@ class VPM_API LevelQuery {
   // several are needed; Error(invalid_argument) as Query, and for an error that is no fraction.
   LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
              const Scene& scene, const Pose& first_pose);
+  // The same for several tools, each at a level of its own, which are named by their place.
+  LevelQuery(std::span<const Tool> tools, const QueryOptions& options, const LevelRequest& request,
+             const Scene& scene, const Pose& first_pose);
   ~LevelQuery();
   LevelQuery(LevelQuery&&) noexcept;
   LevelQuery& operator=(LevelQuery&&) noexcept;
 
-  // Returns the answer at the level of the moment, and with a deadline chooses the next one from
-  // the time that it took.
-  Result run(const Scene& scene, const Pose& pose);
+  // Returns the answer of a tool at the level of the moment, and with a deadline chooses the next
+  // one from the time that it took. Throws Error(invalid_argument), as all below, if there is no
+  // such tool.
+  Result run(const Scene& scene, const Pose& pose, std::size_t tool = 0);
+
+  // Stores the answers of many jobs, as Query does, each at the level of its tool. Throws
+  // Error(invalid_argument) also for a request with a deadline.
+  void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Returns the number of spheres of the level last used.
-  std::uint32_t level() const;
-  // Returns the seconds that the last run took.
+  std::uint32_t level(std::size_t tool = 0) const;
+  // Returns the number of spheres of the finest level that the request allows.
+  std::uint32_t finest_level(std::size_t tool = 0) const;
+  // Returns the seconds that the last run took; for jobs, the mean of one.
   double seconds() const;
   // Returns why this level was used last.
-  LevelReason reason() const;
+  LevelReason reason(std::size_t tool = 0) const;
   // Returns the scene's scale, if the request is for it.
-  std::optional<SceneScale> scale() const;
-  // Returns the state of each sphere, as Query::states().
-  std::span<const SphereState> states() const;
+  std::optional<SceneScale> scale(std::size_t tool = 0) const;
+  // Returns the state of each sphere at the last single pose, as Query::states().
+  std::span<const SphereState> states(std::size_t tool = 0) const;
 
  private:
   struct Impl;

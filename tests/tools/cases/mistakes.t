@@ -82,12 +82,12 @@ $ vpm-query --tool cube.vpmg --frames . --trajectory path.txt --rate nan
 $ vpm-graph --levels 10,20 cube.vpmp -o - | cmp - cube.vpmg
 
 # Options that do not go together are refused; default values, which --dump-config writes, count as not given.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --dump-config | python3 -c "import json, sys; print(sorted(json.load(sys.stdin).keys() & {'batch', 'level', 'frame-rate', 'window'}))"
-['batch', 'frame-rate', 'level', 'window']
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --dump-config | python3 -c "import json, sys; print(sorted(json.load(sys.stdin).keys() & {'batch', 'level', 'frame-rate', 'frame-latency'}))"
+['batch', 'frame-latency', 'frame-rate', 'level']
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --dump-config > all.json && vpm-query --config all.json --for-scene --quiet | wc -l
 2
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9 --rate 5 --align-starts
-2> vpm-query: error: --rate, --align-starts and --window do not go with poses in a cloud, chosen because --frames is not given: leave them out
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --frame-rate 9 --rate 5 --align-starts
+2> vpm-query: error: --rate, --frame-rate and --align-starts do not go with poses in a cloud, chosen because --frames is not given: leave them out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --poses path.txt
 2> vpm-query: error: --pose and --poses exclude each other: leave one of them out
@@ -101,8 +101,8 @@ $ vpm-query --cloud wall.vpmc --poses path.txt
 $ vpm-query --tool cube.vpmg --poses path.txt
 2> vpm-query: error: --cloud is missing: give the .vpmc that vpm-normals wrote, or --frames
 [2]
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9
-2> vpm-query: error: --window does not go with poses in a cloud, chosen because --frames is not given: leave it out
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --realtime
+2> vpm-query: error: --realtime does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --frame-latency 1
 2> vpm-query: error: --frame-latency does not go with poses in a cloud, chosen because --frames is not given: leave it out

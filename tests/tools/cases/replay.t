@@ -75,7 +75,46 @@ $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | tee coupled.jsonl | $VALIDATE coupling-step - && tail -n 1 coupled.jsonl | python3 -c 'import json; s = json.loads(input()); print(s["step"], s["frame"], s["tool"][2] < 0.95)'
 200 frame-000005.depth.png True
 
+# vpm-normals makes clouds of a recording, whose steps give the same; their times and the camera's poses go with them.
+$ vpm-normals steps -o clouds --intrinsics 60,60,31.5,23.5
+2> vpm-normals: note: 6 clouds are in clouds
+$ vpm-query --tool cube.vpmg --frames clouds --trajectory still.txt --quiet | sed 's/[.]vpmc"/.png"/' | cmp - steps.jsonl
+$ vpm-normals tum -o clouds_tum --intrinsics 60,60,31.5,23.5 --depth-scale 2000 --quiet && vpm-query --tool cube.vpmg --frames clouds_tum --trajectory still_tum.txt --quiet -o /dev/null --stats stats.json --force && ls clouds_tum | head -n 2
+1000.000000.vpmc
+1000.033333.vpmc
+2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
+$ vpm-normals holes -o clouds_holes --intrinsics 60,60,31.5,23.5
+2> vpm-normals: warning: holes/frame-000002.depth.png: * (glob)
+2> vpm-normals: warning: holes/frame-000003.depth.png: the file is empty; give a depth image or a cloud; it is left out
+2> vpm-normals: warning: holes/frame-000005.depth.png: no pose of its camera; it is left out
+2> vpm-normals: warning: holes/frame-000006.depth.png: no pixel holds a measurement: all are 0; it is left out
+2> vpm-normals: warning: 1 frames of holes are missing
+2> vpm-normals: note: 4 clouds are in clouds_holes, and 4 frames could not be used
+$ vpm-query --tool cube.vpmg --frames clouds_holes --trajectory still.txt --frame-rate 100 --quiet | python3 volumes.py
+[('frame-000000.depth.vpmc', 0.25, 40), ('frame-000004.depth.vpmc', 0.45, 30), ('frame-000007.depth.vpmc', 0.6, 10), ('frame-000008.depth.vpmc', 0.65, 121)]
+2> vpm-query: warning: 5 frames of clouds_holes are missing; the loop went on with those before
+$ vpm-query --tool cube.vpmg --frames clouds --trajectory still.txt --quiet -o /dev/null --view clouds.html
+
 # Wrong usage is refused.
+$ vpm-normals steps -o clouds --intrinsics 60,60,31.5,23.5
+2> vpm-normals: error: --output clouds has files in it already; name another folder, or give --force
+[2]
+$ vpm-normals steps --report - --intrinsics 60,60,31.5,23.5
+2> vpm-normals: error: the input is a recording: give -o FOLDER for its clouds
+[2]
+$ vpm-normals clouds -o again; vpm-normals none -o nothing --intrinsics 60,60,31.5,23.5 --quiet; vpm-normals two.vpmc -o x.vpmc --camera-poses still.txt
+2> vpm-normals: error: clouds holds clouds already: give it to vpm-query --frames
+2> vpm-normals: warning: none/1.png: no pixel holds a measurement: all are 0; it is left out
+2> vpm-normals: error: none: no frame can be used; the last one: none/1.png: no pixel holds a measurement: all are 0
+2> vpm-normals: error: --camera-poses is for a recording: give one frame's pose by --camera-pose
+[2]
+$ vpm-query --tool cube.vpmg --frames clouds --trajectory still.txt --intrinsics 60,60,31.5,23.5
+2> vpm-query: error: the frames of clouds are clouds, which hold their camera and its pose: give --intrinsics, --camera-pose and --camera-poses to vpm-normals, which makes them
+[2]
+$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --depth-scale 5000; vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --flip
+2> vpm-query: error: --depth-scale is gone from vpm-query: make clouds of the frames first, by vpm-normals FRAMES -o CLOUDS --depth-scale, and give --frames CLOUDS
+2> vpm-query: error: --flip is gone from vpm-query: make clouds of the frames first, by vpm-normals FRAMES -o CLOUDS --flip, and give --frames CLOUDS
+[2]
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coupling stiffness=500,damping=5,rate=500 --rate 1000 --stiffness 2e4
 2> vpm-query: error: --rate and the rate of --coupling differ; give one of them
 [2]
@@ -93,7 +132,7 @@ $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt
 2> vpm-query: error: steps/frame-000000.depth.png: a depth image needs --intrinsics: fx,fy,cx,cy in pixels, or a file with them
 [2]
 $ mkdir bare && vpm-query --tool cube.vpmg --frames bare --trajectory still.txt
-2> vpm-query: error: bare: no frames in it; wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd or .ply files, or depth.txt with "time file" lines
+2> vpm-query: error: bare: no frames in it; wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd, .ply or .vpmc files, or depth.txt with "time file" lines
 [1]
 $ vpm-query --tool cube.vpmg --frames gone --trajectory still.txt
 2> vpm-query: error: cannot read gone: No such file or directory
@@ -112,7 +151,7 @@ $ sed 's/0.95/0/' gap.txt > camera.txt && vpm-query --tool cube.vpmg --frames st
 # A path that misses what the frames see is warned about like poses in a cloud, with the cure.
 $ printf '%s\n' '0 0 0 -0.95 0 0 0 1' '0.2 0 0 -0.95 0 0 0 1' > behind.txt && printf '%s\n' '0 0 0 0.3 0 0 0 1' '0.2 0 0 0.3 0 0 0 1' > before.txt && printf '%s\n' '0 9 0 0.95 0 0 0 1' '0.2 9 0 0.95 0 0 0 1' > beside.txt
 $ for t in behind before beside; do vpm-query --tool cube.vpmg --frames steps --trajectory $t.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null; done
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with inverse poses (from tool to world), or with --axes opengl --camera-pose 0,0,0,0,0,0,1
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with inverse poses (from tool to world), or with vpm-normals --axes opengl --camera-pose 0,0,0,0,0,0,1
 2> vpm-query: warning: at no pose is the tool within its size of the surface; are poses and scene in the same frame and unit?
 2> vpm-query: warning: at no pose is the tool in the camera's view; are poses and scene in the same frame and unit?
 $ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph large.vpmp -o large.vpmg --quiet && vpm-query --tool large.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null

@@ -1,0 +1,35 @@
+// Options of vpm-normals.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "libvpm/import/import_cloud.h"
+#include "tools/common/import_arguments.h"
+#include "tools/common/program.h"
+
+namespace vpm::tools {
+
+struct Arguments {
+  std::string depth, output, report, export_path, view;
+  std::string camera_poses;  // of a recording
+  double frame_rate = 30;    // frames per second of a recording whose names have numbers
+  ImportArguments import;
+};
+
+// Returns who made a cloud of these bytes with these options, for its file. The names of files in
+// the options are replaced by the numbers that they stand for.
+nlohmann::json provenance_of(const Program& program, const ImportOptions& options,
+                             std::span<const std::byte> bytes);
+
+// True if the input is a recording: a folder, or a list of frames whose output is a folder.
+bool is_recording(const Arguments& arguments);
+
+// Makes a cloud of each frame of a recording, in the folder of the output. Throws Error for options
+// that do not go with recordings, for a folder that is not empty without --force, and where no
+// frame can be used; other frames are left out with a warning.
+void run_recording(const Program& program, const Arguments& arguments);
+
+}  // namespace vpm::tools

@@ -1,0 +1,146 @@
+// Mode of vpm-normals that makes clouds of the frames of a recording.
+#include <vpm/error.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/file/stream.h"
+#include "tools/common/error_text.h"
+#include "tools/common/recorded_frames.h"
+#include "tools/normals/arguments.h"
+
+namespace vpm::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Most warnings about frames that are printed.
+constexpr std::size_t kMostWarnings = 5;
+
+void check(const Arguments& a) {
+  if (a.output.empty()) refuse_usage("the input is a recording: give -o FOLDER for its clouds");
+  if (!a.report.empty() || !a.export_path.empty() || !a.view.empty())
+    refuse_usage("--report, --export and --view are for one frame: leave them out, or name it");
+  if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
+    refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
+}
+
+// Makes the folder. Throws Error(invalid_argument) if files are in it already.
+void make_folder(const std::string& folder, const CommonOptions& common) {
+  std::error_code fault;
+  if (fs::exists(folder, fault) && !fs::is_directory(folder, fault))
+    refuse_usage("--output " + folder + " is a file: name a folder for the clouds of a recording");
+  fs::create_directories(folder, fault);
+  if (fault)
+    throw Error(ErrorKind::cannot_write,
+                "cannot make the folder " + folder + ": " + fault.message());
+  if (!common.force && !fs::is_empty(folder, fault))
+    refuse_usage("--output " + folder +
+                 " has files in it already; name another folder, or give --force");
+}
+
+// Returns the name of each frame's cloud: that of the frame with another ending.
+std::vector<std::string> names_of(const Recording& recording) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const RecordedFrame& frame : recording.frames) {
+    names.push_back(fs::path(frame.path).stem().string() + ".vpmc");
+    if (!seen.insert(names.back()).second)
+      refuse("two frames have this name", frame.path, "give each of them a name of its own");
+  }
+  return names;
+}
+
+// Converts frames one by one, and counts those that cannot be used.
+class FrameWriter {
+ public:
+  FrameWriter(const Program& program, const ImportOptions& options, const std::string& folder)
+      : program_(program), options_(options), folder_(folder) {}
+
+  void write(const RecordedFrame& frame, const std::string& name) {
+    try {
+      if (frame.is_lost) refuse("no pose of its camera", frame.path);
+      convert(frame, name);
+    } catch (const Error& fault) {
+      // Errors other than `refused` concern the call, not this frame.
+      if (fault.kind() != ErrorKind::refused) throw;
+      last_fault_ = fault.what();
+      if (++unusable_ <= kMostWarnings) program_.warn(last_fault_ + "; it is left out");
+    }
+  }
+
+  std::size_t written() const { return written_; }
+  std::size_t unusable() const { return unusable_; }
+  const std::string& last_fault() const { return last_fault_; }
+
+ private:
+  void convert(const RecordedFrame& frame, const std::string& name) {
+    ImportOptions options = options_;
+    if (frame.camera) options.to_world = frame.camera;
+    options.depth.looks_for_mistakes = written_ == 0;  // those of one frame are said
+    const std::vector<std::byte> bytes = file::read_all(frame.path);
+    ImportedCloud imported = import_cloud(bytes, frame.path, options);
+    if (written_ == 0) say(program_, frame.path, imported.remarks);
+    imported.cloud.provenance = provenance_of(program_, options, bytes);
+    write_cloud((fs::path(folder_) / name).string(), imported.cloud);
+    ++written_;
+  }
+
+  const Program& program_;
+  const ImportOptions& options_;
+  const std::string& folder_;
+  std::size_t written_ = 0, unusable_ = 0;
+  std::string last_fault_;
+};
+
+// Writes the list that tells the times of the clouds; those that could not be made are in it, so
+// that whoever reads it knows what is missing.
+void write_times(const std::string& folder, const Recording& recording,
+                 const std::vector<std::string>& names) {
+  std::string list = "# time file\n";
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    char time[40];
+    std::snprintf(time, sizeof time, "%.9f ", recording.frames[k].time);
+    list += time + names[k] + "\n";
+  }
+  file::write_all((fs::path(folder) / "depth.txt").string(), list);
+}
+
+}  // namespace
+
+bool is_recording(const Arguments& a) {
+  std::error_code fault;
+  return fs::is_directory(a.depth, fault) || a.output.ends_with('/') ||
+         (!a.output.empty() && a.depth != "-" && fs::is_directory(a.output, fault));
+}
+
+void run_recording(const Program& program, const Arguments& a) {
+  check(a);
+  ImportOptions options = import_options(program, a.import);
+  const RecordingOptions of_recording{a.frame_rate, a.camera_poses, options.to_world};
+  const Recording recording = open_recording(program, a.depth, of_recording, options);
+  if (is_ready_cloud(recording.frames.front()))
+    refuse_usage(a.depth + " holds clouds already: give it to vpm-query --frames");
+  note_recording(program, a.depth, recording, options);
+  const std::vector<std::string> names = names_of(recording);
+  make_folder(a.output, program.common());
+  FrameWriter writer(program, options, a.output);
+  Progress progress("frames", program.common());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    writer.write(recording.frames[k], names[k]);
+    progress.update(static_cast<double>(k + 1) / static_cast<double>(names.size()));
+  }
+  if (writer.written() == 0)
+    refuse(a.depth + ": no frame can be used; the last one: " + writer.last_fault());
+  if (recording.has_clock) write_times(a.output, recording, names);
+  if (recording.missing > 0)
+    program.warn(std::to_string(recording.missing) + " frames of " + a.depth + " are missing");
+  program.note(std::to_string(writer.written()) + " clouds are in " + a.output +
+               (writer.unusable() > 0
+                    ? ", and " + std::to_string(writer.unusable()) + " frames could not be used"
+                    : ""));
+}
+
+}  // namespace vpm::tools
