@@ -131,6 +131,14 @@ void check_json(const std::string& path) {
     refuse_ending(path, "JSON", "name it .json or .jsonl");
 }
 
+void check_results(const std::string& path) {
+  if (ending_of(path) == ".csv") {
+    check_place(path);
+  } else {
+    check_json(path);
+  }
+}
+
 void check_page(const std::string& path) {
   if (!check_place(path)) return;
   const std::string ending = ending_of(path);

@@ -18,6 +18,9 @@ void check_output(const std::string& path, std::optional<Kind> kind);
 // .txt.
 void check_json(const std::string& path);
 
+// Does the same for lines of results, which are CSV if the name ends in .csv, otherwise JSON.
+void check_results(const std::string& path);
+
 // Does the same for a page, whose name may not end like that of any other kind.
 void check_page(const std::string& path);
 

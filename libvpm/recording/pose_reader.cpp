@@ -187,6 +187,7 @@ std::optional<Pose> PoseReader::next() {
     item_ = 0;
   }
   time_ = list_[item_].time;
+  id_ = list_[item_].id;
   return list_[item_++].pose;
 }
 
@@ -237,7 +238,10 @@ PoseReader::TimedPose PoseReader::parse_value(const nlohmann::json& value) {
   const std::optional<double> time = time_of(value);
   const ObjectPose pose = pose_of_object(value);
   time_ = time;
-  return pose.are_named ? TimedPose{rigid(pose.numbers), time} : from_numbers(pose.numbers, time);
+  TimedPose found =
+      pose.are_named ? TimedPose{rigid(pose.numbers), time, {}} : from_numbers(pose.numbers, time);
+  if (value.contains("id")) found.id = value["id"].dump();
+  return found;
 }
 
 PoseReader::TimedPose PoseReader::parse_text(const std::string& line) {

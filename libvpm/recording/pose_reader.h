@@ -21,7 +21,8 @@ namespace vpm {
 //   JSON         [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
 //                by row]}, or {"position": {x, y, z}, "orientation": {x, y, z, w}}; "time",
 //                "timestamp", "stamp" or "t" in an object, or an eighth number in front, is the
-//                time. Also as numpy prints lists, over several lines, and a list of such poses
+//                time; "id" in an object is kept. Also as numpy prints lists, over several lines,
+//                and a list of such poses
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   KITTI text   twelve numbers, a 3x4 matrix row by row
 //   matrix text  four lines of four numbers for each pose, or three for each pose of the file
@@ -40,6 +41,9 @@ class PoseReader {
   // pose or the file cannot be read.
   std::optional<Pose> next();
 
+  // Returns the value of `id` beside the last pose in an object of JSON, as JSON; empty if it has
+  // none.
+  const std::string& id() const { return id_; }
   // Returns the time of the last pose in seconds; empty if its line has none.
   std::optional<double> time() const { return time_; }
   // True if the last line that was read has numbers that are not finite, or only zeros, which
@@ -57,6 +61,7 @@ class PoseReader {
   struct TimedPose {
     Pose pose;
     std::optional<double> time;
+    std::string id = {};  // JSON; empty without one
   };
   struct Line {
     std::string text;
@@ -101,6 +106,7 @@ class PoseReader {
   std::vector<TimedPose> list_;      // poses of the last line
   std::size_t item_ = 0;             // counts those of the list that were returned
   std::optional<double> time_;
+  std::string id_;
   bool is_undefined_ = false;
   double largest_deviation_ = 0;
 };

@@ -153,6 +153,19 @@ TEST(PoseReader, TakesTheUsualNamesOfTheTimeInJson) {
   EXPECT_TRUE(says(fault, "both \"time\" and \"stamp\""));
 }
 
+TEST(PoseReader, KeepsTheIdOfAnObject) {
+  const file::TemporaryFolder folder;
+  const std::string pose = "\"pose\": [1,2,3,1,0,0,0]}";
+  file::write_all(
+      folder.path("poses"),
+      "{\"id\": \"a\", " + pose + "\n1 2 3 1 0 0 0\n[{\"id\": 7, " + pose + ", {" + pose + "]\n");
+  PoseReader reader(folder.path("poses"));
+  for (const char* const id : {"\"a\"", "", "7", ""}) {
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.id(), id);
+  }
+}
+
 TEST(PoseReader, TakesMatricesOfThreeRows) {
   const std::string numbers = "1 0 0 1 0 -1 0 2 0 0 -1 3";
   EXPECT_EQ(first_pose(numbers + "\n").numbers, kTurned);

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
-#include "libvpm/core/parallel.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "tools/common/early_failure.h"
@@ -304,6 +303,9 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
         break;
       case OutputForm::json:
         file::check_json(output.path);
+        break;
+      case OutputForm::results:
+        file::check_results(output.path);
         break;
       case OutputForm::page:
         file::check_page(output.path);

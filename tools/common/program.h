@@ -1,6 +1,8 @@
 // Base of all executables: common options, JSON configurations, exit codes, messages, progress.
 #pragma once
 
+#include <vpm/device.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
@@ -9,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/device/device.h"
 #include "libvpm/file/container.h"
 
 namespace vpm::tools {
@@ -69,8 +70,9 @@ class Program {
   bool on_devices_ = false;
 };
 
-// What a file holds that is no container: what its name's ending says, JSON, or a page.
-enum class OutputForm { by_name, json, page };
+// What a file holds that is no container: what its name's ending says, JSON, lines of results (JSON
+// or CSV), or a page.
+enum class OutputForm { by_name, json, results, page };
 
 // An output file: the option that names it, its path, and its container kind where it has one.
 struct OutputFile {

@@ -54,10 +54,10 @@ void declare_gone_options(CLI::App& app) {
 }
 
 void declare_inputs(CLI::App& app, Arguments& a) {
-  app.add_option(
-         "--tool", a.tools,
-         "Tool model (.vpmg). Given several times, every pose is asked of every tool; lines "
-         "then have the field tool, from 0")
+  app.add_option("--tool", a.tools,
+                 "Tool model (.vpmg), or a mesh, which is packed with 1000 spheres. Given several "
+                 "times, every pose is asked of every tool; lines "
+                 "then have the field tool, from 0")
       ->allow_extra_args(false);
   app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)");
   app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw")
@@ -140,7 +140,8 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
 }
 
 void declare_outputs(CLI::App& app, Arguments& a) {
-  app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
+  app.add_option("-o,--output", a.output, "Results: JSON Lines, or CSV if the name ends in .csv")
+      ->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state: .csv, .ply (balls), .points.ply or .glb");
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
@@ -187,7 +188,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                                   a.replay.camera_poses};
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   check_files(inputs,
-              {{"--output", a.output, std::nullopt, OutputForm::json},
+              {{"--output", a.output, std::nullopt, OutputForm::results},
                {"--spheres-out", a.spheres_out, std::nullopt},
                {"--stats", a.stats, std::nullopt, OutputForm::json},
                {"--view", a.view, std::nullopt, OutputForm::page}},

@@ -32,28 +32,35 @@ void CloudScene::warn_at_end() const {
   if (!has_said_) say(setup_.program, check_->remarks());
 }
 
-PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {
-  if (!arguments.pose.empty())
-    pending_ = naming("--pose", [&] { return pose_from_text(arguments.pose, &deviation_); });
+std::vector<Pose> poses_of(const std::vector<AskedPose>& asked) {
+  std::vector<Pose> poses;
+  for (const AskedPose& one : asked) poses.push_back(one.pose);
+  return poses;
 }
 
-Pose PoseSource::first() {
+PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {
+  if (!arguments.pose.empty())
+    pending_ = {naming("--pose", [&] { return pose_from_text(arguments.pose, &deviation_); }), {}};
+}
+
+AskedPose PoseSource::first() {
   if (!pending_) pending_ = next_one();
   if (!pending_) reader_->refuse_empty();
   return *pending_;
 }
 
-std::optional<Pose> PoseSource::next_one() {
+std::optional<AskedPose> PoseSource::next_one() {
   if (pending_) return std::exchange(pending_, std::nullopt);
   if (!arguments_.pose.empty()) return std::nullopt;
   if (!reader_) reader_.emplace(arguments_.poses);
-  return reader_->next();
+  const std::optional<Pose> pose = reader_->next();
+  return pose ? std::optional(AskedPose{*pose, reader_->id()}) : std::nullopt;
 }
 
-std::vector<Pose> PoseSource::next(std::size_t most) {
-  std::vector<Pose> poses;
+std::vector<AskedPose> PoseSource::next(std::size_t most) {
+  std::vector<AskedPose> poses;
   while (poses.size() < most) {
-    const std::optional<Pose> pose = next_one();
+    const std::optional<AskedPose> pose = next_one();
     if (!pose) break;
     poses.push_back(*pose);
   }

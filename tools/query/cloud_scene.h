@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
+#include "tools/query/query_report.h"
 #include "tools/query/query_setup.h"
 
 namespace vpm::tools {
@@ -38,6 +39,9 @@ class CloudScene {
   double prepare_seconds_ = 0;
 };
 
+// Returns the poses alone.
+std::vector<Pose> poses_of(const std::vector<AskedPose>& asked);
+
 // Pose of --pose, or those of --poses.
 class PoseSource {
  public:
@@ -46,17 +50,18 @@ class PoseSource {
   explicit PoseSource(const Arguments& arguments);
 
   // Returns the first pose, which next() returns again. Throws Error(refused) if there is none.
-  Pose first();
+  AskedPose first();
   // Returns the next poses, `most` of them or as many as are left. Throws what PoseReader throws.
-  std::vector<Pose> next(std::size_t most);
+  std::vector<AskedPose> next(std::size_t most);
   // Returns the largest deviation of a rotation before it was normalised.
   double largest_deviation() const;
 
  private:
-  std::optional<Pose> next_one();
+  std::optional<AskedPose> next_one();
 
   const Arguments& arguments_;
-  std::optional<Pose> pending_;  // pose that was parsed or read, and not yet returned by next()
+  std::optional<AskedPose>
+      pending_;  // pose that was parsed or read, and not yet returned by next()
   double deviation_ = 0;
   std::optional<PoseReader> reader_;
 };

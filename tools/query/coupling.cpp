@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "libvpm/file/stream.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
+#include "tools/query/result_output.h"
 
 namespace vpm::tools {
 namespace {
@@ -81,7 +81,7 @@ struct CoupledRun {
 
 // Moves the device along the path and writes a line for each step.
 CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelQuery& query,
-                  CloudScene& scene, std::optional<PoseView>& view, file::Output& output) {
+                  CloudScene& scene, std::optional<PoseView>& view, ResultOutput& output) {
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
@@ -131,7 +131,7 @@ void note_coupling(const Program& program, const CouplingParameters& parameters,
   if (!warning.empty()) program.warn(warning);
 }
 
-std::string coupled_line(const CoupledStep& s, const std::string& frame) {
+nlohmann::ordered_json coupled_line(const CoupledStep& s, const std::string& frame) {
   nlohmann::ordered_json line;
   line["step"] = s.step;
   line["time"] = s.time;
@@ -149,7 +149,7 @@ std::string coupled_line(const CoupledStep& s, const std::string& frame) {
                     {"dissipated", s.energy.dissipated},
                     {"absorbed", s.energy.absorbed},
                     {"lost", s.energy.lost}};
-  return to_line(line);
+  return line;
 }
 
 void run_coupling(QuerySetup& setup) {
@@ -157,7 +157,7 @@ void run_coupling(QuerySetup& setup) {
   const Tool& tool = setup.tools.front();
   CloudScene scene(setup);
   PoseReader reader(a.poses);
-  file::Output output(a.output);
+  ResultOutput output(a.output, coupling_columns());
   const CouplingParameters parameters =
       coupling_from_text(a.coupling, tool, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);

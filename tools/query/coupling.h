@@ -6,6 +6,7 @@
 #include <vpm/virtual_coupling.h>
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/common/program.h"
@@ -34,6 +35,6 @@ struct CoupledStep {
 
 // Returns one line of results (formats/schemas/coupling-step.json). `frame` is the name of a
 // recorded frame; "" leaves the field out.
-std::string coupled_line(const CoupledStep& step, const std::string& frame);
+nlohmann::ordered_json coupled_line(const CoupledStep& step, const std::string& frame);
 
 }  // namespace vpm::tools

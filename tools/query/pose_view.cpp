@@ -10,6 +10,7 @@
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/view/pose_path.h"
+#include "tools/query/mesh_tool.h"
 
 namespace vpm::tools {
 namespace {
@@ -58,7 +59,7 @@ PoseView::PoseView(std::string path, std::span<const Tool> tools, std::vector<st
   view::check_available();
   for (const Tool& tool : tools) models_.push_back(&HandleAccess::held(tool));
   for (std::string& name : names_) {
-    meshes_.push_back(name == "-" ? Solid{} : read_display_mesh(name));
+    meshes_.push_back(name == "-" || is_mesh_file(name) ? Solid{} : read_display_mesh(name));
     name = view::shown_name(name);
   }
   std::size_t row = 0;

@@ -1,9 +1,9 @@
 // Modes of vpm-query that ask one tool at poses in a cloud, one by one or in batches.
-#include "libvpm/file/stream.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
+#include "tools/query/result_output.h"
 
 namespace vpm::tools {
 namespace {
@@ -18,23 +18,24 @@ std::vector<Job> jobs_of(const std::vector<Pose>& poses) {
 // Queries of one tool and the lines of their results.
 class PoseQueries {
  public:
-  PoseQueries(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, file::Output& output)
+  PoseQueries(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, ResultOutput& output)
       : setup_(setup),
         scene_(scene),
         output_(output),
         query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
-  void ask(const Pose& pose) {
-    const Result result = query_.run(scene_.scene(), pose);
-    write(pose, result);
-    if (setup_.view) setup_.view->add(0, pose, result, query_);
-    last_ = pose;
+  void ask(const AskedPose& asked) {
+    const Result result = query_.run(scene_.scene(), asked.pose);
+    write(asked, result);
+    if (setup_.view) setup_.view->add(0, asked.pose, result, query_);
+    last_ = asked.pose;
   }
 
-  void ask_together(const std::vector<Pose>& poses) {
+  void ask_together(const std::vector<AskedPose>& asked) {
+    const std::vector<Pose> poses = poses_of(asked);
     std::vector<Result> results(poses.size());
     query_.run(scene_.scene(), jobs_of(poses), results);
-    for (std::size_t k = 0; k < poses.size(); ++k) write(poses[k], results[k]);
+    for (std::size_t k = 0; k < poses.size(); ++k) write(asked[k], results[k]);
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
     last_ = poses.back();
   }
@@ -48,16 +49,16 @@ class PoseQueries {
   const Pose& last() const { return last_; }
 
  private:
-  void write(const Pose& pose, const Result& result) {
-    scene_.see(pose, 0, result);
-    output_.append(result_line(seconds_.size(), result, query_.level(), setup_.options.measure,
-                               query_.reason(), {}));
+  void write(const AskedPose& asked, const Result& result) {
+    scene_.see(asked.pose, 0, result);
+    output_.append(result_line(seconds_.size(), asked.id, result, query_.level(),
+                               setup_.options.measure, query_.reason(), {}));
     seconds_.push_back(query_.seconds());
   }
 
   QuerySetup& setup_;
   CloudScene& scene_;
-  file::Output& output_;
+  ResultOutput& output_;
   LevelQuery query_;
   std::vector<double> seconds_;
   Pose last_;
@@ -69,8 +70,8 @@ void run_poses(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   PoseSource source(a);
   CloudScene scene(setup);
-  file::Output output(a.output);
-  PoseQueries queries(setup, scene, source.first(), output);
+  ResultOutput output(a.output, result_columns());
+  PoseQueries queries(setup, scene, source.first().pose, output);
   note_scale(setup.program, queries.query());
   const bool together = a.batch > 1;
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))

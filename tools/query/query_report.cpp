@@ -6,10 +6,6 @@
 
 namespace vpm::tools {
 
-std::string to_line(const nlohmann::ordered_json& line) {
-  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
 namespace {
 
 // Returns the value of `level_reason` in formats/schemas/query-result.json.
@@ -35,12 +31,13 @@ const char* text_of(LevelReason reason) {
 
 }  // namespace
 
-std::string result_line(std::size_t pose_index, const Result& r, std::uint32_t level,
-                        Measure measure, LevelReason level_reason,
-                        const std::optional<StepOfReplay>& replay,
-                        std::optional<std::size_t> tool) {
+nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id, const Result& r,
+                                   std::uint32_t level, Measure measure, LevelReason level_reason,
+                                   const std::optional<StepOfReplay>& replay,
+                                   std::optional<std::size_t> tool) {
   nlohmann::ordered_json line;
   line["pose"] = pose_index;
+  if (!id.empty()) line["id"] = nlohmann::ordered_json::parse(id);
   if (tool) line["tool"] = *tool;
   if (replay) {
     line["time"] = replay->time;
@@ -56,7 +53,7 @@ std::string result_line(std::size_t pose_index, const Result& r, std::uint32_t l
   line["level"] = level;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
   if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);
-  return to_line(line);
+  return line;
 }
 
 nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,

@@ -20,16 +20,20 @@ struct StepOfReplay {
   std::string frame;  // name of the file; "" before the first frame
 };
 
-// Returns one line of JSON. File names that are not UTF-8 are escaped.
-std::string to_line(const nlohmann::ordered_json& line);
+// What a line says of the pose that was asked.
+struct AskedPose {
+  Pose pose;
+  std::string id;  // JSON, as it was given with the pose; empty without one
+};
 
 // Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the
 // device or the clock, unless a deadline chose the level. `level_reason` is left out if
-// no option chose the level; `tool` is the tool's index among several.
-std::string result_line(std::size_t pose_index, const Result& result, std::uint32_t level,
-                        Measure measure, LevelReason level_reason,
-                        const std::optional<StepOfReplay>& replay,
-                        std::optional<std::size_t> tool = std::nullopt);
+// no option chose the level; `tool` is the tool's index among several, and `id` that of the pose.
+nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id,
+                                   const Result& result, std::uint32_t level, Measure measure,
+                                   LevelReason level_reason,
+                                   const std::optional<StepOfReplay>& replay,
+                                   std::optional<std::size_t> tool = std::nullopt);
 
 // Returns the timings of a run (formats/schemas/query-stats.json), and with a deadline the fraction
 // of the queries that kept it. Times of poses and of the scene's preparation are in seconds.

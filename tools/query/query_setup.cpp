@@ -9,6 +9,7 @@
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
+#include "tools/query/mesh_tool.h"
 
 namespace vpm::tools {
 namespace {
@@ -26,9 +27,10 @@ LevelRequest level_request(const Arguments& a) {
   return request;
 }
 
-std::vector<Tool> read_tools(const std::vector<std::string>& names) {
+std::vector<Tool> read_tools(const Program& program, const std::vector<std::string>& names) {
   std::vector<Tool> tools;
-  for (const std::string& name : names) tools.push_back(Tool::read(name));
+  for (const std::string& name : names)
+    tools.push_back(is_mesh_file(name) ? tool_of_mesh(program, name) : Tool::read(name));
   return tools;
 }
 
@@ -74,7 +76,7 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
     : program(p),
       arguments(a),
       level(level_request(a)),
-      tools(read_tools(a.tools)),
+      tools(read_tools(p, a.tools)),
       points(denoising_of(a)) {
   options = query_options(program, a);
   if (!a.view.empty()) view.emplace(a.view, tools, a.tools, options);

@@ -12,7 +12,6 @@
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
-#include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/frame_schedule.h"
@@ -27,6 +26,7 @@
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
+#include "tools/query/result_output.h"
 
 namespace vpm::tools {
 namespace {
@@ -52,7 +52,7 @@ class Replay {
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen.
   void run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-           Measure measure, file::Output& output, std::optional<PoseView>& view);
+           Measure measure, ResultOutput& output, std::optional<PoseView>& view);
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -208,7 +208,7 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
 }
 
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-                 Measure measure, file::Output& output, std::optional<PoseView>& view) {
+                 Measure measure, ResultOutput& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
@@ -232,8 +232,8 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
     if (change) say(*change);
     if (change && !sizes_differ_) compare_size(*change);
     output.append(coupling ? coupled_line(step, frame_name())
-                           : result_line(k, step.contact, query.level(), measure, query.reason(),
-                                         StepOfReplay{step.time, frame_name()}));
+                           : result_line(k, {}, step.contact, query.level(), measure,
+                                         query.reason(), StepOfReplay{step.time, frame_name()}));
   }
   wall_seconds_ = clock_->seconds();
   say_at_end();
@@ -329,7 +329,7 @@ void run_frames(QuerySetup& setup) {
     note_coupling(setup.program, *parameters, tool, setup.options.stiffness);
     coupling.emplace(*parameters, tool.center_of_mass(), first);
   }
-  file::Output output(a.output);
+  ResultOutput output(a.output, parameters ? coupling_columns() : result_columns());
   const std::vector<const ToolModel*> tools{&HandleAccess::held(tool)};
   const std::optional<Remark> sizes = improbable_sizes(tools, replay.first_scene(), true);
   if (sizes) say(setup.program, {*sizes});

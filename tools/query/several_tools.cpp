@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <span>
 
-#include "libvpm/file/stream.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
+#include "tools/query/result_output.h"
 
 namespace vpm::tools {
 namespace {
@@ -24,13 +24,15 @@ class SeveralTools {
   }
 
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
-  void ask(std::span<const Pose> poses, file::Output& output) {
+  void ask(const std::vector<AskedPose>& asked, ResultOutput& output) {
+    const std::vector<Pose> poses = poses_of(asked);
     const std::vector<Result> results = timed_results(poses);
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools_;
       scene_.see(poses[k / tools_], tool, results[k]);
-      output.append(result_line(poses_asked_ + k / tools_, results[k], query_.level(tool),
-                                setup_.options.measure, query_.reason(tool), {}, tool));
+      output.append(result_line(poses_asked_ + k / tools_, asked[k / tools_].id, results[k],
+                                query_.level(tool), setup_.options.measure, query_.reason(tool), {},
+                                tool));
     }
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
     poses_asked_ += poses.size();
@@ -79,8 +81,8 @@ void run_several_tools(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   PoseSource source(a);
   CloudScene scene(setup);
-  const Pose first = source.first();
-  file::Output output(a.output);
+  const Pose first = source.first().pose;
+  ResultOutput output(a.output, result_columns());
   SeveralTools tools(setup, scene, first);
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     tools.ask(poses, output);

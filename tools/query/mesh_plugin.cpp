@@ -1,0 +1,48 @@
+// The library that packs meshes for vpm-query, a client of vpm::solid.
+#include "tools/query/mesh_plugin.h"
+
+#include <vpm/device.h>
+#include <vpm/solid.h>
+
+#include <cstring>
+#include <exception>
+#include <string>
+
+namespace vpm::tools {
+namespace {
+
+void copy(const std::string& text, char (&into)[1024]) {
+  std::strncpy(into, text.c_str(), sizeof into - 1);
+}
+
+void pack_mesh(const char* path, unsigned spheres, const char* output, SayOfMesh say,
+               void* listener) {
+  const SolidMesh mesh = SolidMesh::read(path);
+  for (const std::string& note : mesh.notes()) say(listener, false, note.c_str());
+  for (const std::string& warning : mesh.warnings()) say(listener, true, warning.c_str());
+  build_tool(pack(mesh, {.spheres = spheres})).write(output);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) bool vpm_pack_mesh(const char* mesh,
+                                                                     unsigned spheres, int threads,
+                                                                     const char* output,
+                                                                     SayOfMesh say, void* listener,
+                                                                     PackingFault* fault) {
+  try {
+    set_thread_count(threads);
+    pack_mesh(mesh, spheres, output, say, listener);
+    return true;
+  } catch (const Error& error) {
+    fault->kind = static_cast<int>(error.kind());
+    copy(error.problem(), fault->problem);
+    copy(error.where(), fault->where);
+    copy(error.hint(), fault->hint);
+  } catch (const std::exception& error) {
+    copy(error.what(), fault->problem);
+  }
+  return false;
+}
+
+}  // namespace vpm::tools

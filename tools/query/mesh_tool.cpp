@@ -1,0 +1,95 @@
+#include "tools/query/mesh_tool.h"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <vpm/device.h>
+#include <vpm/error.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "libvpm/file/sniff.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
+#include "tools/query/mesh_plugin.h"
+
+namespace vpm::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kSpheres = 1000;
+
+// A file in memory, which has a name as long as this lives.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("tool.vpmg", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw Error(ErrorKind::refused, "not enough memory for a tool model");
+  }
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return "/dev/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+// Returns the function of the plug-in, which lies where the libraries are.
+PackMesh load_plugin() {
+  std::error_code fault;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", fault).parent_path();
+  void* library = nullptr;
+  for (const fs::path& place : {folder / ".." / "lib" / kMeshPlugin, fs::path(kMeshPlugin)})
+    if (library == nullptr) library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const function = library == nullptr ? nullptr : ::dlsym(library, kPackMesh);
+  if (function == nullptr)
+    throw Error(ErrorKind::unavailable,
+                std::string("a mesh as the tool needs ") + kMeshPlugin + ", which is not there", {},
+                "give the .vpmg that vpm-pack and vpm-graph make of it");
+  return reinterpret_cast<PackMesh>(function);
+}
+
+struct Listener {
+  const Program& program;
+  const std::string& path;
+};
+
+void say_of_mesh(void* listener, bool is_warning, const char* text) {
+  const auto& [program, path] = *static_cast<const Listener*>(listener);
+  is_warning ? program.warn(path + ": " + text) : program.note(path + ": " + text);
+}
+
+}  // namespace
+
+bool is_mesh_file(const std::string& path) {
+  static const std::set<std::string> kEndings{".stl", ".obj", ".off",  ".ply", ".om",
+                                              ".dae", ".glb", ".gltf", ".3mf", ".fbx"};
+  std::error_code fault;
+  if (!fs::is_regular_file(path, fault)) return false;
+  const std::vector<std::byte> bytes = file::read_all(path);
+  if (const auto content = file::sniff(bytes)) return content->is_mesh;
+  return kEndings.contains(file::in_lower_case(fs::path(path).extension().string()));
+}
+
+Tool tool_of_mesh(const Program& program, const std::string& path) {
+  const PackMesh pack_mesh = load_plugin();
+  const MemoryFile model;
+  Listener listener{program, path};
+  PackingFault fault;
+  if (!pack_mesh(path.c_str(), kSpheres, program.common().threads, model.path().c_str(),
+                 say_of_mesh, &listener, &fault))
+    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
+  Tool tool = Tool::read(model.path());
+  program.note(path + ": packed with " + std::to_string(tool.spheres().size()) +
+               " spheres for this run; vpm-pack and vpm-graph make a .vpmg to keep, of other units "
+               "and numbers too");
+  return tool;
+}
+
+}  // namespace vpm::tools
