@@ -1,0 +1,61 @@
+// What is summed up of a triangle that the other surface crosses: the part of it inside the other
+// solid, and the other's planes. All lengths in the pair's unit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "libvpm/solid/triangle_pair.h"
+#include "libvpm/solid/wide_sum.h"
+
+namespace vpm {
+
+// The part of a triangle a, b, c inside is (w of c) T(a,b,c) - Σ s T(a,b,p) over the crossings p of
+// edge b-c, s = +1 where the edge enters, + Σ T(a,p,q) over the segments p-q, with T the oriented
+// triangle and w 1 if c is inside. The edges at a add nothing, since they pass through it.
+struct CrossedTriangle {
+  std::uint32_t triangle = 0;
+  std::array<Vec3, 3> corner;
+  Vec3 normal;  // unit length
+  // Integrals over the part, but for w of c: 1, x, and products of x.
+  WideSum area;
+  WideVec3 mean;
+  std::array<WideSum, 6> products;
+  int entries = 0;  // of edge b-c: how often it enters less how often it leaves
+  bool is_last_edge_crossed = false;
+  // Depth below the other's triangles that cross this one, weighted by the segments' lengths.
+  WideVec3 plane_normal;
+  WideSum plane_offset, weight;
+
+  void add(double sign, Vec3 p, Vec3 q) {
+    const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
+    area.add(size);
+    mean.add(size / 3 * (corner[0] + p + q));
+    const Products products_of = mean_products(corner[0], p, q);
+    for (std::size_t k = 0; k < 6; ++k) products[k].add(size * products_of[k]);
+  }
+  void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
+  void add_edge_crossing(const EdgeCrossing& crossing, Vec3 place) {
+    if (crossing.edge != 1) return;
+    is_last_edge_crossed = true;
+    entries += crossing.sign;
+    add(-crossing.sign, corner[1], place);
+  }
+  void add_corner_inside() { add(1, corner[1], corner[2]); }
+  // Adds a plane of the other surface, n.x = offset, met along a segment of this length.
+  void add_plane(Vec3 n, double offset, double length) {
+    plane_normal.add(length * n);
+    plane_offset.add(length * offset);
+    weight.add(length);
+  }
+  Products products_real() const {
+    Products p{};
+    for (std::size_t k = 0; k < 6; ++k) p[k] = products[k].real();
+    return p;
+  }
+  ForceMoments moments() const {
+    return flat_force_moments(normal, area.real(), mean.real(), products_real());
+  }
+};
+
+}  // namespace vpm

@@ -1,0 +1,63 @@
+#include "libvpm/solid/depth_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/box.h"
+
+namespace vpm {
+namespace {
+
+// Depth outside is known up to so many cells; farther places are only known to be outside.
+constexpr double kBandOutside = 3;
+
+}  // namespace
+
+DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
+                     const Distance& distance) {
+  const Vec3 size = high - low;
+  cell_ = std::max({size.x, size.y, size.z}) / cells;
+  low_ = low - 0.5 * cell_ * Vec3{1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k)
+    count_[k] = static_cast<std::size_t>(coordinate(high - low_, static_cast<int>(k)) / cell_) + 3;
+  samples_.reserve(count_[0] * count_[1] * count_[2]);
+  for (std::size_t z = 0; z < count_[2]; ++z)
+    for (std::size_t y = 0; y < count_[1]; ++y) {
+      // The distance at a place bounds the next one's, which shortens the search.
+      double bound = HUGE_VAL;
+      for (std::size_t x = 0; x < count_[0]; ++x) {
+        const Vec3 place = low_ + cell_ * Vec3{static_cast<double>(x), static_cast<double>(y),
+                                               static_cast<double>(z)};
+        const bool in = inside(place);
+        const double band = in ? HUGE_VAL : kBandOutside * cell_, within = std::min(bound, band);
+        const double found = std::min(distance(place, within), within);
+        bound = found < band ? found + 1.01 * cell_ : HUGE_VAL;
+        samples_.push_back(static_cast<float>(in ? found : -found));
+      }
+    }
+}
+
+Depth DepthGrid::at(Vec3 x) const {
+  std::array<std::size_t, 3> cell{};
+  std::array<double, 3> part{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double along = coordinate(x - low_, static_cast<int>(k)) / cell_;
+    const double last = static_cast<double>(count_[k] - 1);
+    const double inside = std::clamp(along, 0.0, last);
+    cell[k] = std::min(static_cast<std::size_t>(inside), count_[k] - 2);
+    part[k] = inside - static_cast<double>(cell[k]);
+  }
+  const std::size_t y = count_[0], z = count_[0] * count_[1];
+  const float* s = samples_.data() + cell[0] + y * cell[1] + z * cell[2];
+  const auto between = [](double from, double to, double t) { return from + t * (to - from); };
+  const auto [tx, ty, tz] = part;
+  const double x00 = between(s[0], s[1], tx), x10 = between(s[y], s[y + 1], tx),
+               x01 = between(s[z], s[z + 1], tx), x11 = between(s[y + z], s[y + z + 1], tx);
+  const double y0 = between(x00, x10, ty), y1 = between(x01, x11, ty);
+  const double along_x0 = between(double{s[1]} - s[0], double{s[y + 1]} - s[y], ty),
+               along_x1 = between(double{s[z + 1]} - s[z], double{s[y + z + 1]} - s[y + z], ty);
+  const Vec3 gradient{between(along_x0, along_x1, tz), between(x10 - x00, x11 - x01, tz), y1 - y0};
+  return {between(y0, y1, tz), (1 / cell_) * gradient};
+}
+
+}  // namespace vpm

@@ -1,0 +1,37 @@
+// Depth below a closed surface on a dense grid, between samples linear along each axis.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+struct Depth {
+  double value = 0;  // m; positive inside
+  Vec3 gradient;     // toward deeper places
+};
+
+class DepthGrid {
+ public:
+  // Samples from `low` to `high` and a cell beyond; `cells` along the longest side. `distance`
+  // gives the distance of the surface where it is below `within`, else at least `within`.
+  using Inside = std::function<bool(Vec3 x)>;
+  using Distance = std::function<double(Vec3 x, double within)>;
+  DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside, const Distance& distance);
+
+  // Returns depth and gradient at x, own frame; of the nearest place of the grid beyond it.
+  Depth at(Vec3 x) const;
+  double cell() const { return cell_; }
+  std::size_t bytes() const { return samples_.size() * sizeof samples_[0]; }
+
+ private:
+  Vec3 low_;
+  double cell_;
+  std::array<std::size_t, 3> count_{};
+  std::vector<float> samples_;
+};
+
+}  // namespace vpm

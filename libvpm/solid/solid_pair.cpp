@@ -1,0 +1,126 @@
+#include "libvpm/solid/solid_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+#include <utility>
+
+#include "libvpm/core/error.h"
+
+namespace vpm {
+namespace {
+
+constexpr int kAttempts = 6;
+
+// Moves of the second solid, in units of the jitter: small whole numbers without pattern, so that
+// identical solids at one place are in general position too.
+constexpr Vec3 kShifts[kAttempts]{{.31, -.47, .23},   {-.41, .29, .37}, {.19, .43, -.33},
+                                  {-.27, -.39, -.49}, {.45, .17, -.21}, {-.13, .35, .25}};
+constexpr Vec3 kTurns[kAttempts]{{.37, .21, -.43}, {.25, -.49, .31},  {-.45, .33, .17},
+                                 {.41, -.19, .29}, {-.23, -.35, .47}, {.15, .39, -.27}};
+
+// Returns a motion of about the jitter: a rotation by less than 2^-36 is one of 1 and small
+// entries, exact in double.
+Pose small_motion(int attempt, double reach) {
+  const double size = SolidSurface::kJitter;
+  const Vec3 w = size * kTurns[attempt];
+  return {{{1, -w.z, w.y}, {w.z, 1, -w.x}, {-w.y, w.x, 1}}, size * reach * kShifts[attempt]};
+}
+
+auto key_of(const SolidSurface& s) {
+  return std::tuple(s.reach(), s.volume(), s.hash());
+}
+auto key_of(const Pose& p) {
+  const auto& [t, x, y, z] =
+      std::tuple(p.translation, p.rotation.row0, p.rotation.row1, p.rotation.row2);
+  return std::tuple(t.x, t.y, t.z, x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z);
+}
+
+Pose about_center(const Pose& pose, const SolidSurface& solid) {
+  return {pose.rotation, pose * solid.center_of_mass()};
+}
+
+}  // namespace
+
+SolidPair::SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b)
+    : first_(key_of(*b) < key_of(*a) ? b : a),
+      second_(first_ == a ? b : a),
+      is_turned_(first_ != a),
+      are_twins_(key_of(*a) == key_of(*b)),
+      triangles_(*first_, *second_, SurfacePair::Over::triangles) {
+  const bool have_depth = first_->has_depth() && second_->has_depth();
+  if (have_depth &&
+      (&first_->facets() != &first_->tree() || &second_->facets() != &second_->tree()))
+    facets_.emplace(*first_, *second_, SurfacePair::Over::facets);
+}
+
+SolidPair::Order SolidPair::order(const Pose& pose_a, const Pose& pose_b) const {
+  const bool turned = are_twins_ ? key_of(pose_b) < key_of(pose_a) : is_turned_;
+  const Pose &first = turned ? pose_b : pose_a, &second = turned ? pose_a : pose_b;
+  return {turned, about_center(first, *first_), about_center(second, *second_)};
+}
+
+double SolidPair::closure(const SurfacePairSums& sums) const {
+  SurfaceMoments all = sums.inner[0].moments;
+  all.add(sums.inner[1].moments);
+  const double reach = std::min(first_->reach(), second_->reach());
+  return std::max(norm(all.area) / (reach * reach), norm(all.turn()) / (reach * reach * reach));
+}
+
+// Sums with one jitter after the other until the boundary closes.
+SurfacePairSums SolidPair::sums(SurfacePair& pair, const Pose& relative, bool with_force,
+                                SharedSolid& shared) {
+  double worst = 0;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const SurfacePairSums found =
+        pair.run(relative * small_motion(attempt, first_->reach()), with_force);
+    ++shared.attempts;
+    const double gap = closure(found);
+    worst = std::max(worst, gap);
+    if (found.undecided > 0 || !(gap <= kMaxClosure)) continue;
+    shared.closure = std::max(shared.closure, gap);
+    return found;
+  }
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the boundary of what the two solids share does not close: its area vectors miss by "
+      "%.1e of the smaller reach squared",
+      worst);
+  refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
+}
+
+SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with_force) {
+  const auto [turned, first, second] = order(pose_a, pose_b);
+  const Pose relative = relative_to(first, second);
+  SharedSolid shared;
+  const double apart = norm(relative.translation);
+  if (apart > (1 + 1e-9) * (first_->reach() + second_->reach())) return shared;
+  const SurfacePairSums found = sums(triangles_, relative, with_force && !facets_, shared);
+  const SurfaceMoments &m = found.inner[0].moments, &n = found.inner[1].moments;
+  shared.volume = std::max((m.flux() + n.flux()) / 3, 0.0);
+  if (shared.volume == 0) return shared;
+  const SurfacePairSums over_facets =
+      with_force && facets_ ? sums(*facets_, relative, true, shared) : found;
+
+  const Vec3 centroid = 0.25 / shared.volume * (m.first + n.first);
+  const InnerSurface &f = over_facets.inner[0], &g = over_facets.inner[1];
+  const double v = first_->volume(), w = second_->volume();
+  // Each solid's depth counts by the square of its volume: a half-space's alone, twins' by half.
+  const double of_second = w * w / (v * v + w * w), of_first = v * v / (v * v + w * w);
+  const Vec3 force = of_second * f.force - of_first * g.force;
+  const Vec3 torque = of_second * f.torque - of_first * g.torque;
+  const double sign = turned ? -1 : 1;
+  const Rotation& to_world = first.rotation;
+  // Both parts say the same but for the closure: their mean is the same for either role.
+  const Vec3 area = 0.5 * (m.area - n.area), turn = 0.5 * (m.turn() - n.turn());
+  shared.area = sign * (to_world * area);
+  shared.turn = sign * (to_world * (turn - cross(centroid, area)));
+  shared.force = sign * (to_world * force);
+  shared.torque = sign * (to_world * (torque - cross(centroid, force)));
+  shared.centroid = first * centroid;
+  return shared;
+}
+
+}  // namespace vpm

@@ -1,0 +1,64 @@
+// What two solids share at a pose: volume, its gradient, and the wrench that parts them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "libvpm/solid/solid_surface.h"
+#include "libvpm/solid/surface_pair.h"
+
+namespace vpm {
+
+// All in world axes and the world's frame.
+struct SharedSolid {
+  double volume = 0;  // m^3
+  Vec3 centroid;      // m; 0 where the volume is 0
+  // ∫ n dA over the part of the first solid's surface inside the other, m^2: the rate at which the
+  // volume grows where the first moves; and ∫ (x - centroid) cross n dA, m^3, where it turns about
+  // the centroid.
+  Vec3 area, turn;
+  // Force on the first solid, m^3 (times a stiffness in N/m^3: N), and its torque about the
+  // centroid, m^4. The other's are the opposite.
+  Vec3 force, torque;
+  // How far the boundary of what is shared is from closed: |∫ n dA| relative to the square, and
+  // |∫ x cross n dA| to the cube, of the smaller reach; the larger of both.
+  double closure = 0;
+  int attempts = 0;  // with different jitter
+};
+
+// Pair of solids, prepared to be asked at many poses. Belongs to one thread.
+class SolidPair {
+ public:
+  // Shares the surfaces.
+  SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b);
+
+  // Measures at poses that map the surfaces' meshes to the world; both must be rigid. a and b
+  // swapped give the same bits, with signs of area, turn, force and torque turned, since a pair is
+  // computed in one order. Leaves force and torque 0 without `with_force`, which needs surfaces
+  // with depth. Throws Error(refused) where no attempt closes.
+  SharedSolid measure(const Pose& pose_a, const Pose& pose_b, bool with_force = true);
+
+  // Largest SharedSolid::closure that is given.
+  static constexpr double kMaxClosure = 1e-8;
+
+ private:
+  // Whether the surfaces are `turned` into the one order, and their poses with the origin at the
+  // centres of mass.
+  struct Order {
+    bool is_turned;
+    Pose first, second;
+  };
+  Order order(const Pose& pose_a, const Pose& pose_b) const;
+  SurfacePairSums sums(SurfacePair& pair, const Pose& relative, bool with_force,
+                       SharedSolid& shared);
+  double closure(const SurfacePairSums& sums) const;
+
+  std::shared_ptr<const SolidSurface> first_, second_;  // in the one order
+  bool is_turned_ = false;  // a is the second; twins are ordered by their poses
+  bool are_twins_ = false;
+  SurfacePair triangles_;
+  std::optional<SurfacePair> facets_;  // where forces are over others than the triangles
+};
+
+}  // namespace vpm

@@ -1,0 +1,132 @@
+#include "libvpm/solid/solid_surface.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "libvpm/core/box.h"
+#include "libvpm/core/error.h"
+#include "libvpm/mesh/weld.h"
+#include "libvpm/solid/facets.h"
+
+namespace vpm {
+namespace {
+
+constexpr int kGridCells = 64;
+// Longest edge of facets, relative to the reach: depth is taken for linear over a piece of them.
+constexpr double kFacet = 0.12;
+// Largest number of facets, relative to the triangles, that replace these for the volume too.
+constexpr double kFewFacets = 1.25;
+// Depths below so many cells are those of the closest point.
+constexpr double kNearCells = 1.5;
+
+// Returns a well-mixed number from 0 to 1 (the finaliser of MurmurHash3, public domain).
+double hashed_fraction(std::uint64_t v) {
+  v ^= v >> 33;
+  v *= 0xff51afd7ed558ccdull;
+  v ^= v >> 33;
+  v *= 0xc4ceb9fe1a85ec53ull;
+  v ^= v >> 33;
+  return static_cast<double>(v >> 11) * 0x1p-53;
+}
+
+// Returns an offset within half of the unit cube that depends on the place only.
+Vec3 jitter_at(Vec3 x) {
+  const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v + 0.0); };  // -0 is 0
+  const std::uint64_t place =
+      (bits(x.x) * 0x9e3779b97f4a7c15ull ^ bits(x.y)) * 0xbf58476d1ce4e5b9ull ^ bits(x.z);
+  return {hashed_fraction(place + 1) - 0.5, hashed_fraction(place + 2) - 0.5,
+          hashed_fraction(place + 3) - 0.5};
+}
+
+// Joins equal vertices and drops what collapses.
+Solid joined(const Solid& solid) {
+  Solid result = solid;
+  weld(result.vertices, 0, result.triangles);
+  drop_unused(result.vertices, result.triangles);
+  return result;
+}
+
+}  // namespace
+
+SolidSurface::SolidSurface(const Solid& solid, bool with_depth)
+    : SolidSurface(solid, enclosure_of(solid), with_depth) {}
+
+SolidSurface::SolidSurface(const Solid& solid, const Enclosure& enclosure, bool with_depth) {
+  prepare(joined(enclosure.surface ? *enclosure.surface : solid), with_depth);
+}
+
+void SolidSurface::prepare(Solid surface, bool with_depth) {
+  const MassProperties mass = mass_properties(surface);
+  if (surface.triangles.empty() || !(mass.volume > 0))
+    refuse("the solid has no volume", {}, "give a closed mesh that is oriented outward");
+  center_ = mass.center_of_mass;
+  reach_ = bounding_radius(surface, center_);
+  // Hashes places in units of a power of two near the reach, so that a solid that is scaled by
+  // powers of two keeps its jitter.
+  int exponent = 0;
+  std::frexp(reach_, &exponent);
+  for (Vec3& v : surface.vertices) {
+    const Vec3 place = v - center_;
+    v = place + kJitter * reach_ * jitter_at(std::ldexp(1.0, -exponent) * place);
+  }
+  hash_ = content_hash(surface);
+  Solid facets = with_depth ? cut_into_facets(surface, kFacet * reach_) : Solid{};
+  // A few large triangles more are measured as facets at once.
+  if (static_cast<double>(facets.triangles.size()) <=
+          kFewFacets * static_cast<double>(surface.triangles.size()) &&
+      with_depth)
+    surface = std::move(facets), facets = {};
+  const bool has_large = facets.triangles.size() > surface.triangles.size();
+  if (has_large)
+    facets_ = std::make_unique<SurfaceTree>(facets.vertices, facets.triangles, reach_, true);
+  tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_,
+                                        with_depth && !has_large);
+  inside_ = std::make_unique<InsideIndex>(tree_->vertices(), tree_->triangles());
+  volume_ = tree_->summaries()[0].moments.flux() / 3;
+  if (with_depth) prepare_depth();
+}
+
+void SolidSurface::prepare_depth() {
+  closest_ = std::make_unique<TriangleBvh>(tree_->vertices(), tree_->triangles());
+  Box box;
+  for (const Vec3& v : tree_->vertices()) box.add(v);
+  grid_.emplace(
+      box.low, box.high, kGridCells, [&](Vec3 x) { return holds(x); },
+      [&](Vec3 x, double within) { return closest_->closest(x, within).distance; });
+}
+
+Depth SolidSurface::exact_depth(Vec3 x) const {
+  const SurfacePoint nearest = closest_->closest(x);
+  const bool in = holds(x);
+  const auto [a, b, c] = tree_->corners(nearest.triangle);
+  const Vec3 out = x - nearest.point;
+  const Vec3 away = nearest.distance > 0 ? (1 / nearest.distance) * out
+                                         : -normalized_or_zero(cross(b - a, c - a));
+  return {in ? nearest.distance : -nearest.distance, in || nearest.distance == 0 ? away : -away};
+}
+
+Depth SolidSurface::depth(Vec3 x) const {
+  const Depth coarse = grid_->at(x);
+  if (coarse.value > kNearCells * grid_->cell()) return coarse;
+  const double within = std::max(coarse.value, 0.0) + kNearCells * grid_->cell();
+  const SurfacePoint nearest = closest_->closest(x, within);
+  if (nearest.triangle == SurfacePoint::kNone) return coarse;
+  const auto [a, b, c] = tree_->corners(nearest.triangle);
+  const Vec3 normal = normalized_or_zero(cross(b - a, c - a)), out = x - nearest.point;
+  const double sign = dot(out, normal) > 0 ? -1 : 1;
+  const bool is_on = nearest.distance <= 1e-9 * reach_;
+  return {sign * nearest.distance, is_on ? -normal : (sign / nearest.distance) * out};
+}
+
+std::size_t SolidSurface::bytes() const {
+  std::size_t sum = tree_->bytes() + inside_->bytes();
+  if (facets_) sum += facets_->bytes();
+  if (grid_) sum += grid_->bytes();
+  if (closest_)
+    sum += closest_->nodes().size() * sizeof closest_->nodes()[0] +
+           closest_->corners().size() * sizeof closest_->corners()[0];
+  return sum;
+}
+
+}  // namespace vpm

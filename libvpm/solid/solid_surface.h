@@ -1,0 +1,63 @@
+// The surface of a solid, prepared once so that overlaps with others take time of the contact's
+// size.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "libvpm/mesh/outer_surface.h"
+#include "libvpm/mesh/triangle_bvh.h"
+#include "libvpm/model/solid.h"
+#include "libvpm/solid/depth_grid.h"
+#include "libvpm/solid/inside_index.h"
+#include "libvpm/solid/surface_tree.h"
+
+namespace vpm {
+
+// Immutable. Lives in its own frame: the axes of the mesh about the centre of mass.
+class SolidSurface {
+ public:
+  // Takes what the mesh encloses at least once (its `enclosure`), welds it, and moves each vertex
+  // by at most kJitter of the reach, by a hash of its place: flush, coincident and aligned faces of
+  // two solids then are in general position. `with_depth` also prepares forces. Throws
+  // Error(refused) for a solid without volume or triangles.
+  explicit SolidSurface(const Solid& solid, bool with_depth = true);
+  SolidSurface(const Solid& solid, const Enclosure& enclosure, bool with_depth);
+
+  static constexpr double kJitter = 0x1p-36;
+
+  double volume() const { return volume_; }           // m^3
+  Vec3 center_of_mass() const { return center_; }     // in the mesh's frame, m
+  double reach() const { return reach_; }             // largest distance of a vertex from it, m
+  const SurfaceTree& tree() const { return *tree_; }  // of the triangles
+  // Returns the tree of facets, for forces: that of the triangles where these are small.
+  const SurfaceTree& facets() const { return facets_ ? *facets_ : *tree_; }
+  bool has_depth() const { return grid_.has_value(); }
+  const std::string& hash() const { return hash_; }  // of the surface; orders pairs
+  std::size_t triangles() const { return tree_->triangles().size(); }
+  std::size_t bytes() const;
+
+  // True if x, own frame, lies inside.
+  bool holds(Vec3 x) const { return inside_->holds(x, tree_->vertices(), tree_->triangles()); }
+  // Returns the depth of x below the surface, by the grid where it is deep and by the closest point
+  // near the surface. Needs has_depth().
+  Depth depth(Vec3 x) const;
+  // Returns the depth by the closest point, everywhere. Needs has_depth().
+  Depth exact_depth(Vec3 x) const;
+
+ private:
+  void prepare(Solid surface, bool with_depth);
+  void prepare_depth();
+
+  double volume_ = 0, reach_ = 0;
+  Vec3 center_;
+  std::string hash_;
+  std::unique_ptr<SurfaceTree> tree_, facets_;
+  std::unique_ptr<InsideIndex> inside_;
+  std::unique_ptr<TriangleBvh> closest_;
+  std::optional<DepthGrid> grid_;
+};
+
+}  // namespace vpm

@@ -1,0 +1,96 @@
+// Integrals over a piece of surface with unit normal n: what the divergence theorem needs for the
+// volume, its centroid and its gradient, and what a force linear in x needs.
+#pragma once
+
+#include <array>
+
+#include "libvpm/core/pose.h"
+
+namespace vpm {
+
+// Products of coordinates in the order xx, yy, zz, xy, xz, yz.
+using Products = std::array<double, 6>;
+
+inline Products operator*(double s, const Products& p) {
+  return {s * p[0], s * p[1], s * p[2], s * p[3], s * p[4], s * p[5]};
+}
+// Multiplies the symmetric matrix of the products by v.
+inline Vec3 times(const Products& p, Vec3 v) {
+  return {p[0] * v.x + p[3] * v.y + p[4] * v.z, p[3] * v.x + p[1] * v.y + p[5] * v.z,
+          p[4] * v.x + p[5] * v.y + p[2] * v.z};
+}
+
+// Returns the mean of the products over the triangle a, b, c (exact for polynomials of degree 2).
+inline Products mean_products(Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 t = a + b + c;
+  const auto mean = [](double p, double q, double r, double s, double p2, double q2, double r2,
+                       double s2) { return (p * p2 + q * q2 + r * r2 + s * s2) / 12; };
+  return {
+      mean(a.x, b.x, c.x, t.x, a.x, b.x, c.x, t.x), mean(a.y, b.y, c.y, t.y, a.y, b.y, c.y, t.y),
+      mean(a.z, b.z, c.z, t.z, a.z, b.z, c.z, t.z), mean(a.x, b.x, c.x, t.x, a.y, b.y, c.y, t.y),
+      mean(a.x, b.x, c.x, t.x, a.z, b.z, c.z, t.z), mean(a.y, b.y, c.y, t.y, a.z, b.z, c.z, t.z)};
+}
+
+struct SurfaceMoments {
+  Vec3 area;              // ∫ n dA, m^2
+  Vec3 by_x, by_y, by_z;  // ∫ x n dA, ∫ y n dA, ∫ z n dA, m^3
+  Vec3 first;             // ∫ x (x.n) dA, m^4: four times ∫ x dV of what the surface encloses
+
+  // Returns ∫ x.n dA: three times the volume that the surface encloses.
+  double flux() const { return by_x.x + by_y.y + by_z.z; }
+  // Returns ∫ x cross n dA.
+  Vec3 turn() const { return {by_y.z - by_z.y, by_z.x - by_x.z, by_x.y - by_y.x}; }
+
+  void add(const SurfaceMoments& o) {
+    area += o.area, by_x += o.by_x, by_y += o.by_y, by_z += o.by_z, first += o.first;
+  }
+};
+
+// Returns the moments of a flat piece with the area vector `area` times `fraction`, given
+// ∫ x dA / |area| and ∫ x x dA / |area|.
+inline SurfaceMoments flat_moments(Vec3 area, double fraction, Vec3 mean,
+                                   const Products& products) {
+  return {fraction * area, mean.x * area, mean.y * area, mean.z * area, times(products, area)};
+}
+
+inline SurfaceMoments triangle_moments(Vec3 a, Vec3 b, Vec3 c) {
+  return flat_moments(0.5 * cross(b - a, c - a), 1, (a + b + c) / 3, mean_products(a, b, c));
+}
+
+// Returns the moments of a surface that is moved by a pose.
+inline SurfaceMoments moved(const SurfaceMoments& m, const Pose& pose) {
+  const Rotation& r = pose.rotation;
+  const Vec3 t = pose.translation, back = transpose(r) * t, area = r * m.area;
+  // ∫ x (t.n) dA about the old origin.
+  const Vec3 along{dot(m.by_x, back), dot(m.by_y, back), dot(m.by_z, back)};
+  const Vec3 x = r * m.by_x, y = r * m.by_y, z = r * m.by_z;
+  const auto by = [&](Vec3 row, double shift) {
+    return row.x * x + row.y * y + row.z * z + shift * area;
+  };
+  return {area, by(r.row0, t.x), by(r.row1, t.y), by(r.row2, t.z),
+          r * (m.first + along) + (m.flux() + dot(t, area)) * t};
+}
+
+// Second moments beside, for forces that are linear over a piece.
+struct ForceMoments {
+  SurfaceMoments surface;
+  std::array<Vec3, 6> by_product;  // ∫ xx n dA and so on, in the order of Products
+
+  void add(const ForceMoments& o) {
+    surface.add(o.surface);
+    for (std::size_t k = 0; k < by_product.size(); ++k) by_product[k] += o.by_product[k];
+  }
+};
+
+// Returns the moments of a flat piece as flat_moments() does.
+inline ForceMoments flat_force_moments(Vec3 area, double fraction, Vec3 mean, const Products& p) {
+  ForceMoments m{flat_moments(area, fraction, mean, p), {}};
+  for (std::size_t k = 0; k < p.size(); ++k) m.by_product[k] = p[k] * area;
+  return m;
+}
+
+inline ForceMoments triangle_force_moments(Vec3 a, Vec3 b, Vec3 c) {
+  return flat_force_moments(0.5 * cross(b - a, c - a), 1, (a + b + c) / 3, mean_products(a, b, c));
+}
+
+}  // namespace vpm

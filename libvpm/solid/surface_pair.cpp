@@ -1,0 +1,296 @@
+#include "libvpm/solid/surface_pair.h"
+
+#include <cmath>
+
+#include "libvpm/solid/linear_force.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kLeaf = SurfaceTree::kLeaf, kNone = SurfaceTree::kNone;
+// Pieces of a surface over which the depth is taken for linear: their radius relative to the reach,
+// and half their slab's thickness relative to the depth.
+constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5;
+// Planes that cross a triangle stand for the depth below them if their mean normal is so long;
+// where they disagree there is a crease.
+constexpr double kAgreeing2 = 0.97;
+
+SurfaceMoments scaled(const SurfaceMoments& m, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  return {s2 * m.area, s3 * m.by_x, s3 * m.by_y, s3 * m.by_z, s3 * s * m.first};
+}
+
+// Returns a power of two that is larger than any coordinate where the solids can meet.
+double unit_for(double reach, double other_reach) {
+  int exponent = 0;
+  std::frexp(reach + 2 * other_reach, &exponent);
+  return std::ldexp(1.0, exponent);
+}
+
+}  // namespace
+
+SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second, Over over)
+    : unit_(unit_for(first.reach(), second.reach())), per_unit_(1 / unit_) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    Role& role = roles_[k];
+    role.solid = k == 0 ? &first : &second;
+    role.tree = over == Over::facets ? &role.solid->facets() : &role.solid->tree();
+    const std::size_t triangles = role.tree->triangles().size();
+    role.crossed_stamp.assign(triangles, 0);
+    role.crossed_place.assign(triangles, 0);
+    role.node_stamp.assign(role.tree->nodes().size(), 0);
+    role.corner_stamp.assign(role.tree->vertices().size(), 0);
+    role.is_inside.assign(role.tree->vertices().size(), 0);
+  }
+}
+
+SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force) {
+  start(pose, with_force);
+  const SurfaceTree &first = *roles_[0].tree, &second = *roles_[1].tree;
+  if (children_that_meet(first.nodes()[0], second.bounds(0, 0), FloatPose(pose)) == 0) return sums_;
+  walk_.run(first, second, pose, [&](std::uint32_t s, std::uint32_t t) { meet(s, t); });
+  for (std::size_t role = 0; role < 2; ++role) {
+    mark_crossed(role);
+    add_crossed(role);
+    add_whole(role);
+    sums_.inner[role] = result(roles_[role]);
+  }
+  return sums_;
+}
+
+void SurfacePair::start(const Pose& pose, bool with_force) {
+  if (++stamp_ == 0) {  // wrapped: forget all stamps
+    for (Role& role : roles_)
+      for (auto* stamps : {&role.crossed_stamp, &role.node_stamp, &role.corner_stamp})
+        stamps->assign(stamps->size(), 0);
+    stamp_ = 1;
+  }
+  with_force_ = with_force;
+  sums_ = {};
+  roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
+  roles_[1].to_first = pose, roles_[1].to_other = pose;
+  for (Role& role : roles_) {
+    role.crossed.clear();
+    role.cut = role.whole = {};
+    role.cut_wrench = role.whole_wrench = {};
+  }
+}
+
+PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) const {
+  std::array<Vec3, 3> corners = role.tree->corners(triangle);
+  if (&role == &roles_[1])
+    for (Vec3& corner : corners) corner = role.to_first * corner;
+  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return {corners, role.tree->triangles()[triangle], normal, role.tree->longest_edge(triangle)};
+}
+
+void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triangle) {
+  ++sums_.candidates;
+  const PlacedTriangle a = placed(roles_[0], first_triangle),
+                       b = placed(roles_[1], second_triangle);
+  TriangleCrossing crossing;
+  const Meeting meeting = cross_triangles(a, b, crossing);
+  if (meeting == Meeting::undecided) ++sums_.undecided;
+  if (meeting != Meeting::crossing) return;
+  ++sums_.crossings;
+  CrossedTriangle &of_a = crossed(roles_[0], first_triangle, a),
+                  &of_b = crossed(roles_[1], second_triangle, b);
+  const Vec3 start = per_unit_ * crossing.start, end = per_unit_ * crossing.end;
+  of_a.add_segment(start, end);
+  of_b.add_segment(end, start);
+  for (int k = 0; k < crossing.first_count; ++k) {
+    const EdgeCrossing& at = crossing.of_first[static_cast<std::size_t>(k)];
+    of_a.add_edge_crossing(at, per_unit_ * at.place);
+  }
+  for (int k = 0; k < crossing.second_count; ++k) {
+    const EdgeCrossing& at = crossing.of_second[static_cast<std::size_t>(k)];
+    of_b.add_edge_crossing(at, per_unit_ * at.place);
+  }
+  if (!with_force_) return;
+  const double length = norm(end - start);
+  of_a.add_plane(of_b.normal, dot(of_b.normal, of_b.corner[0]), length);
+  of_b.add_plane(of_a.normal, dot(of_a.normal, of_a.corner[0]), length);
+}
+
+CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
+                                      const PlacedTriangle& at) {
+  if (role.crossed_stamp[triangle] != stamp_) {
+    role.crossed_stamp[triangle] = stamp_;
+    role.crossed_place[triangle] = static_cast<std::uint32_t>(role.crossed.size());
+    CrossedTriangle& added = role.crossed.emplace_back();
+    added.triangle = triangle;
+    for (std::size_t k = 0; k < 3; ++k) added.corner[k] = per_unit_ * at.corner[k];
+    added.normal = normalized_or_zero(at.normal);
+  }
+  return role.crossed[role.crossed_place[triangle]];
+}
+
+bool SurfacePair::is_inside(std::size_t which, std::uint32_t vertex) {
+  Role& role = roles_[which];
+  if (role.corner_stamp[vertex] != stamp_) {
+    role.corner_stamp[vertex] = stamp_;
+    role.is_inside[vertex] =
+        roles_[1 - which].solid->holds(role.to_other * role.tree->vertices()[vertex]);
+  }
+  return role.is_inside[vertex] != 0;
+}
+
+// Takes the sides of vertices from the crossings of their edges, and stamps the nodes above.
+void SurfacePair::mark_crossed(std::size_t which) {
+  Role& role = roles_[which];
+  for (const CrossedTriangle& triangle : role.crossed) {
+    const Triangle& corners = role.tree->triangles()[triangle.triangle];
+    // An edge that enters once more than it leaves comes from outside and ends inside.
+    if (triangle.entries == 1 || triangle.entries == -1) {
+      const bool ends_inside = triangle.entries == 1;
+      role.corner_stamp[corners[1]] = role.corner_stamp[corners[2]] = stamp_;
+      role.is_inside[corners[1]] = !ends_inside;
+      role.is_inside[corners[2]] = ends_inside;
+    } else if (triangle.entries != 0) {
+      ++sums_.undecided;
+    }
+    for (std::uint32_t k = role.tree->parent_of(triangle.triangle); role.node_stamp[k] != stamp_;
+         k = role.tree->summaries()[k].parent)
+      role.node_stamp[k] = stamp_;
+  }
+}
+
+void SurfacePair::add_crossed(std::size_t which) {
+  Role& role = roles_[which];
+  for (CrossedTriangle& triangle : role.crossed) {
+    if (is_inside(which, role.tree->triangles()[triangle.triangle][2]))
+      triangle.add_corner_inside();
+    role.cut.add(flat_moments(triangle.normal, triangle.area.real(), triangle.mean.real(),
+                              triangle.products_real()));
+    if (with_force_) add_force_of_cut(which, triangle);
+  }
+}
+
+// Adds the largest nodes that nothing crosses and that lie inside: one vertex tells for each.
+void SurfacePair::add_whole(std::size_t which) {
+  Role& role = roles_[which];
+  const SurfaceTree& tree = *role.tree;
+  const SurfaceBounds all = roles_[1 - which].tree->bounds(0, 0);
+  // Maps the other's frame to this one's.
+  const FloatPose pose(roles_[1 - which].to_other);
+  pending_.assign(1, 0);
+  while (!pending_.empty()) {
+    const SurfaceTree::Node& node = tree.nodes()[pending_.back()];
+    pending_.pop_back();
+    const unsigned meets = children_that_meet(node, all, pose);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if ((meets >> k & 1) == 0) continue;
+      const std::uint32_t child = node.child[k];
+      if ((child & kLeaf) != 0) {
+        add_whole_triangle(which, child & ~kLeaf);
+        continue;
+      }
+      const SurfaceTree::Summary& summary = tree.summaries()[child];
+      if (role.node_stamp[child] == stamp_ || !summary.is_connected) {
+        pending_.push_back(child);
+        continue;
+      }
+      if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
+      role.whole.add(scaled(summary.moments, per_unit_));
+      if (with_force_) add_force(which, child);
+    }
+  }
+}
+
+void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) {
+  Role& role = roles_[which];
+  if (role.crossed_stamp[triangle] == stamp_) return;
+  const Triangle& corners = role.tree->triangles()[triangle];
+  std::uint32_t asked = corners[0];
+  for (const std::uint32_t v : corners)
+    if (role.corner_stamp[v] == stamp_) asked = v;
+  const bool inside = is_inside(which, asked);
+  for (const std::uint32_t v : corners) role.corner_stamp[v] = stamp_, role.is_inside[v] = inside;
+  if (!inside) return;
+  const auto [a, b, c] = role.tree->corners(triangle);
+  role.whole.add(scaled(triangle_moments(a, b, c), per_unit_));
+  if (with_force_) add_force_of_triangle(which, triangle);
+}
+
+InnerSurface SurfacePair::result(const Role& role) const {
+  SurfaceMoments moments = moved(scaled(role.whole.real(), unit_), role.to_first);
+  moments.add(scaled(role.cut.real(), unit_));
+  const double unit3 = unit_ * unit_ * unit_, unit4 = unit3 * unit_;
+  const Vec3 force = role.to_first.rotation * (unit3 * role.whole_wrench.force.real());
+  const Vec3 torque = role.to_first.rotation * (unit4 * role.whole_wrench.torque.real()) +
+                      cross(role.to_first.translation, force);
+  return {moments, force + unit3 * role.cut_wrench.force.real(),
+          torque + unit4 * role.cut_wrench.torque.real()};
+}
+
+// Adds the force on a node inside, by pieces small and flat enough that the depth is linear there.
+void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
+  Role& role = roles_[which];
+  const SolidSurface& other = *roles_[1 - which].solid;
+  const double unit3 = per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
+  patches_.assign(1, top);
+  while (!patches_.empty()) {
+    const std::uint32_t k = patches_.back();
+    patches_.pop_back();
+    const SurfaceTree::Patch& patch = role.tree->patches()[k];
+    bool is_small = patch.radius <= kPatchRadius * role.solid->reach();
+    Depth depth;
+    if (is_small) {
+      depth = other.depth(role.to_other * patch.middle);
+      ++sums_.depths;
+      is_small = patch.thickness <= kPatchThickness * depth.value;
+    }
+    if (!is_small) {
+      for (const std::uint32_t child : role.tree->nodes()[k].child) {
+        if (child == kNone) continue;
+        if ((child & kLeaf) != 0)
+          add_force_of_triangle(which, child & ~kLeaf);
+        else
+          patches_.push_back(child);
+      }
+      continue;
+    }
+    depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
+    const ForceAndTorque f = linear_force(patch.moments, depth, patch.middle);
+    role.whole_wrench.force.add(unit3 * f.force);
+    role.whole_wrench.torque.add(unit4 * f.torque);
+  }
+}
+
+void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangle) {
+  Role& role = roles_[which];
+  const auto [a, b, c] = role.tree->corners(triangle);
+  const Vec3 middle = (a + b + c) / 3;
+  Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
+  ++sums_.depths;
+  depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
+  const ForceAndTorque f = linear_force(triangle_force_moments(a, b, c), depth, middle);
+  const double unit3 = per_unit_ * per_unit_ * per_unit_;
+  role.whole_wrench.force.add(unit3 * f.force);
+  role.whole_wrench.torque.add(unit3 * per_unit_ * f.torque);
+}
+
+// Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
+// closest point where these disagree.
+void SurfacePair::add_force_of_cut(std::size_t which, const CrossedTriangle& triangle) {
+  Role& role = roles_[which];
+  const double weight = triangle.weight.real(), area = triangle.area.real();
+  if (!(weight > 0)) return;
+  const Vec3 normal = triangle.plane_normal.real() / weight;
+  Vec3 place;
+  Depth depth{triangle.plane_offset.real() / weight, -normal};
+  if (squared_norm(normal) < kAgreeing2 && area > 0) {
+    const SolidSurface& other = *roles_[1 - which].solid;
+    place = triangle.mean.real() / area;
+    const Pose to_other = which == 0 ? role.to_other : Pose{};
+    depth = other.depth(to_other * (unit_ * place));
+    ++sums_.depths;
+    depth.value *= per_unit_;
+    depth.gradient = transpose(to_other.rotation) * depth.gradient;
+  }
+  const ForceAndTorque f = linear_force(triangle.moments(), depth, place);
+  role.cut_wrench.force.add(f.force);
+  role.cut_wrench.torque.add(f.torque);
+}
+
+}  // namespace vpm

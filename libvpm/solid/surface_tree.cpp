@@ -1,0 +1,262 @@
+#include "libvpm/solid/surface_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "libvpm/core/box.h"
+
+namespace vpm {
+namespace {
+
+// Padding of float bounds, relative to the reach: several float roundings of either solid.
+constexpr double kPadding = 2e-6;
+
+struct Range {
+  std::uint32_t begin, end;
+  std::uint32_t size() const { return end - begin; }
+};
+
+}  // namespace
+
+class SurfaceTree::Build {
+ public:
+  Build(SurfaceTree& tree, double reach) : tree_(tree), padding_(kPadding * reach) {
+    const std::size_t n = tree.triangles_.size();
+    order_.resize(n);
+    std::iota(order_.begin(), order_.end(), 0u);
+    for (std::uint32_t t = 0; t < n; ++t) {
+      const auto [a, b, c] = tree.corners(t);
+      middle_.push_back((a + b + c) / 3);
+    }
+  }
+
+  void run(bool with_patches) {
+    const Range all{0, static_cast<std::uint32_t>(order_.size())};
+    add_node(0);
+    ranges_.push_back(all);
+    if (all.size() > 1) add_children(all, 0);
+    std::vector<Triangle> sorted;
+    for (const std::uint32_t t : order_) sorted.push_back(tree_.triangles_[t]);
+    tree_.triangles_ = std::move(sorted);
+    tree_.parent_of_.assign(order_.size(), 0);
+    for (std::uint32_t t = 0; t < order_.size(); ++t) {
+      const auto [a, b, c] = tree_.corners(t);
+      const double longest2 =
+          std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+      tree_.longest_edge_.push_back(static_cast<float>(1.00001 * std::sqrt(longest2)));
+    }
+    tree_.nodes_[0].child = {all.size() > 1 ? 1 : kLeaf, kNone, kNone, kNone};
+    for (std::uint32_t k = 0; k < tree_.nodes_.size(); ++k) set_bounds(k);
+    sum_up();
+    find_connected();
+    if (with_patches) make_patches();
+  }
+
+ private:
+  std::uint32_t add_node(std::uint32_t parent) {
+    Node node{};
+    node.child.fill(kNone);
+    tree_.nodes_.push_back(node);
+    tree_.summaries_.push_back({parent, 0, false, {}});
+    return static_cast<std::uint32_t>(tree_.nodes_.size() - 1);
+  }
+
+  // Splits at the median along the longest axis of the triangles' centres; ties by place in the
+  // list, so that the tree is one.
+  std::pair<Range, Range> halves(Range r) {
+    Box box;
+    for (std::uint32_t i = r.begin; i < r.end; ++i) box.add(middle_[order_[i]]);
+    const int axis = box.longest_axis();
+    const std::uint32_t split = r.begin + (r.size() + 1) / 2;
+    std::nth_element(order_.begin() + r.begin, order_.begin() + split, order_.begin() + r.end,
+                     [&](std::uint32_t s, std::uint32_t t) {
+                       const double x = coordinate(middle_[s], axis),
+                                    y = coordinate(middle_[t], axis);
+                       return x != y ? x < y : s < t;
+                     });
+    return {{r.begin, split}, {split, r.end}};
+  }
+
+  // Adds the node of a range of at least two triangles and all below it.
+  void add_children(Range range, std::uint32_t parent) {
+    const std::uint32_t node = add_node(parent);
+    ranges_.push_back(range);
+    std::vector<Range> parts;
+    const auto [left, right] = halves(range);
+    for (const Range half : {left, right}) {
+      if (half.size() == 1) {
+        parts.push_back(half);
+        continue;
+      }
+      const auto [low, high] = halves(half);
+      parts.push_back(low);
+      parts.push_back(high);
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool is_leaf = parts[k].size() == 1;
+      const auto next = static_cast<std::uint32_t>(tree_.nodes_.size());
+      tree_.nodes_[node].child[k] = is_leaf ? kLeaf | parts[k].begin : next;
+      if (!is_leaf) add_children(parts[k], node);
+    }
+  }
+
+  Range range_of(std::uint32_t child) const {
+    const std::uint32_t t = child & ~kLeaf;
+    return (child & kLeaf) != 0 ? Range{t, t + 1} : ranges_[child];
+  }
+
+  template <class Take>
+  void for_vertices(Range range, const Take& take) const {
+    for (std::uint32_t t = range.begin; t < range.end; ++t)
+      for (const std::uint32_t v : tree_.triangles_[t]) take(tree_.vertices_[v]);
+  }
+
+  // Returns the direction of the area vector in floats; any axis if that is zero.
+  Vec3 slab_normal(Range range) const {
+    Vec3 area;
+    for (std::uint32_t t = range.begin; t < range.end; ++t) {
+      const auto [a, b, c] = tree_.corners(t);
+      area += cross(b - a, c - a);
+    }
+    const Vec3 unit = normalized_or_zero(area);
+    return widen(narrow(squared_norm(unit) > 0 ? unit : Vec3{1, 0, 0}));
+  }
+
+  void set_bounds(std::uint32_t k) {
+    Node& node = tree_.nodes_[k];
+    for (std::size_t l = 0; l < 4; ++l) {
+      const std::uint32_t child = node.child[l];
+      const int lane = static_cast<int>(l);
+      if (child == kNone) {
+        for (Float4& c : node.center) c[lane] = HUGE_VALF;  // meets nothing
+        continue;
+      }
+      const Range range = range_of(child);
+      if ((child & kLeaf) != 0) tree_.parent_of_[child & ~kLeaf] = k;
+      Box box;
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      const Vec3 normal = slab_normal(range);
+      for_vertices(range, [&](Vec3 v) {
+        box.add(v);
+        low = std::min(low, dot(normal, v)), high = std::max(high, dot(normal, v));
+      });
+      float size = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int axis = static_cast<int>(i);
+        const double from = coordinate(box.low, axis), to = coordinate(box.high, axis);
+        node.center[i][lane] = static_cast<float>(0.5 * (from + to));
+        node.half[i][lane] = static_cast<float>(0.5 * (to - from) + padding_);
+        node.normal[i][lane] = static_cast<float>(coordinate(normal, axis));
+        size += node.half[i][lane];
+      }
+      node.offset[lane] = static_cast<float>(0.5 * (low + high));
+      node.width[lane] = static_cast<float>(0.5 * (high - low) + padding_);
+      node.size[lane] = (child & kLeaf) != 0 ? 0 : size;
+    }
+  }
+
+  // Sums the moments bottom-up: children have larger indices than their parents.
+  void sum_up() {
+    for (std::size_t k = tree_.nodes_.size(); k-- > 0;) {
+      Summary& summary = tree_.summaries_[k];
+      summary.first = ranges_[k].begin;
+      for (const std::uint32_t child : tree_.nodes_[k].child) {
+        if (child == kNone) continue;
+        if ((child & kLeaf) != 0) {
+          const auto [a, b, c] = tree_.corners(child & ~kLeaf);
+          summary.moments.add(triangle_moments(a, b, c));
+        } else {
+          summary.moments.add(tree_.summaries_[child].moments);
+        }
+      }
+    }
+  }
+
+  // Counts, per node, the parts that its triangles form, by union-find over their vertices.
+  void find_connected() {
+    const std::size_t n = tree_.vertices_.size();
+    std::vector<std::uint32_t> root(n), seen(n, kNone);
+    const auto find = [&](std::uint32_t v) {
+      while (root[v] != v) v = root[v] = root[root[v]];
+      return v;
+    };
+    for (std::uint32_t k = 0; k < tree_.nodes_.size(); ++k) {
+      std::size_t parts = 0;
+      for (std::uint32_t t = ranges_[k].begin; t < ranges_[k].end; ++t) {
+        const Triangle& corners = tree_.triangles_[t];
+        for (const std::uint32_t v : corners)
+          if (seen[v] != k) seen[v] = k, root[v] = v, ++parts;
+        for (const std::uint32_t v : {corners[1], corners[2]}) {
+          const std::uint32_t x = find(corners[0]), y = find(v);
+          if (x != y) root[x] = y, --parts;
+        }
+      }
+      tree_.summaries_[k].is_connected = parts == 1;
+    }
+  }
+
+  void make_patches() {
+    tree_.patches_.resize(tree_.nodes_.size());
+    for (std::size_t k = tree_.nodes_.size(); k-- > 0;) {
+      Patch& patch = tree_.patches_[k];
+      double area = 0;
+      Vec3 sum;
+      for (std::uint32_t t = ranges_[k].begin; t < ranges_[k].end; ++t) {
+        const auto [a, b, c] = tree_.corners(t);
+        const double twice = norm(cross(b - a, c - a));
+        area += twice, sum += twice / 3 * (a + b + c);
+      }
+      patch.middle = area > 0 ? sum / area : tree_.corners(ranges_[k].begin)[0];
+      const Vec3 normal = slab_normal(ranges_[k]);
+      double radius2 = 0, low = HUGE_VAL, high = -HUGE_VAL;
+      for_vertices(ranges_[k], [&](Vec3 v) {
+        radius2 = std::max(radius2, squared_norm(v - patch.middle));
+        low = std::min(low, dot(normal, v)), high = std::max(high, dot(normal, v));
+      });
+      patch.radius = std::sqrt(radius2);
+      patch.thickness = 0.5 * (high - low);
+      for (const std::uint32_t child : tree_.nodes_[k].child) {
+        if (child == kNone) continue;
+        if ((child & kLeaf) != 0) {
+          const auto [a, b, c] = tree_.corners(child & ~kLeaf);
+          patch.moments.add(triangle_force_moments(a, b, c));
+        } else {
+          patch.moments.add(tree_.patches_[child].moments);
+        }
+      }
+    }
+  }
+
+  SurfaceTree& tree_;
+  double padding_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Vec3> middle_;
+  std::vector<Range> ranges_;  // of the nodes
+};
+
+SurfaceTree::SurfaceTree(std::vector<Vec3> vertices, std::vector<Triangle> triangles, double reach,
+                         bool with_patches)
+    : vertices_(std::move(vertices)), triangles_(std::move(triangles)) {
+  Build(*this, reach).run(with_patches);
+}
+
+SurfaceBounds SurfaceTree::bounds(std::uint32_t node, std::uint32_t child) const {
+  const Node& n = nodes_[node];
+  const int l = static_cast<int>(child);
+  return {{n.center[0][l], n.center[1][l], n.center[2][l]},
+          {n.half[0][l], n.half[1][l], n.half[2][l]},
+          {n.normal[0][l], n.normal[1][l], n.normal[2][l]},
+          n.offset[l],
+          n.width[l],
+          n.size[l]};
+}
+
+std::size_t SurfaceTree::bytes() const {
+  const auto held = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  return held(vertices_) + held(triangles_) + held(parent_of_) + held(longest_edge_) +
+         held(nodes_) + held(summaries_) + held(patches_);
+}
+
+}  // namespace vpm

@@ -1,0 +1,39 @@
+// Solids of the tests of pairs, prepared, and what their truth is made of.
+#pragma once
+
+#include <memory>
+#include <random>
+
+#include "libvpm/core/pose.h"
+#include "libvpm/solid/solid_pair.h"
+
+namespace vpm::test {
+
+inline std::shared_ptr<const SolidSurface> surface(const Solid& solid, bool with_depth = false) {
+  return std::make_shared<SolidSurface>(solid, with_depth);
+}
+
+inline Pose at(Vec3 place) {
+  return {{}, place};
+}
+
+// Returns a motion with a random rotation and a place in a cube of this half edge.
+inline Pose random_pose(std::mt19937_64& random, double half) {
+  std::uniform_real_distribution<double> place(-half, half), turn(-2, 2);
+  const Vec3 by{turn(random), turn(random), turn(random)};
+  return {exact_rotation(rotation_from_vector(by)), {place(random), place(random), place(random)}};
+}
+
+inline Solid moved(Solid solid, const Pose& pose) {
+  for (Vec3& v : solid.vertices) v = pose * v;
+  return solid;
+}
+
+// Returns volume and centroid of what two convex solids share, by cutting each face of one by the
+// half-spaces of the other. Their faces must not lie in a common plane.
+MassProperties convex_intersection(const Solid& a, const Solid& b);
+
+// Returns the part of a polygon below the planes of a convex solid's faces.
+std::vector<Vec3> clipped(std::vector<Vec3> polygon, const Solid& convex);
+
+}  // namespace vpm::test
