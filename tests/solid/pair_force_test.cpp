@@ -1,0 +1,174 @@
+// Force and torque of the energy of depth, against analysis and fine cubature.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <tuple>
+
+#include "libvpm/synthetic/shapes.h"
+#include "tests/solid/pair_cases.h"
+
+namespace vpm {
+namespace {
+
+using synthetic::make_box;
+using synthetic::make_cube;
+using synthetic::make_icosphere;
+using synthetic::make_tetrahedron;
+using synthetic::make_torus;
+using test::at;
+using test::surface;
+
+// Returns ∫ -d n dA and its moment about the origin over the part of a's surface inside of b, with
+// the depth d below b's nearest face, by triangles no larger than `size`.
+std::pair<Vec3, Vec3> pushed_out_of(const Solid& a, const Solid& b, double size) {
+  Vec3 force, torque;
+  const auto depth = [&](Vec3 x) {
+    double least = HUGE_VAL;
+    for (const auto& [i, j, k] : b.triangles) {
+      const Vec3 p = b.vertices[i];
+      const Vec3 n = normalized_or_zero(cross(b.vertices[j] - p, b.vertices[k] - p));
+      least = std::min(least, dot(n, p - x));
+    }
+    return std::max(least, 0.0);
+  };
+  const std::function<void(Vec3, Vec3, Vec3)> add = [&](Vec3 p, Vec3 q, Vec3 r) {
+    if (std::max({norm(q - p), norm(r - q), norm(p - r)}) > size) {
+      const Vec3 pq = 0.5 * (p + q), qr = 0.5 * (q + r), rp = 0.5 * (r + p);
+      add(p, pq, rp), add(pq, q, qr), add(rp, qr, r), add(pq, qr, rp);
+      return;
+    }
+    const Vec3 n = 0.5 * cross(q - p, r - p);
+    for (const Vec3 x : {0.5 * (p + q), 0.5 * (q + r), 0.5 * (r + p)}) {
+      const Vec3 f = -depth(x) / 3 * n;
+      force += f, torque += cross(x, f);
+    }
+  };
+  for (const auto& [i, j, k] : a.triangles) {
+    const auto part = test::clipped({a.vertices[i], a.vertices[j], a.vertices[k]}, b);
+    for (std::size_t m = 2; m < part.size(); ++m) add(part[0], part[m - 1], part[m]);
+  }
+  return {force, torque};
+}
+
+struct Truth {
+  Vec3 force, torque;  // torque about the centroid
+};
+
+Truth truth_of(const Solid& a, const Solid& b, Vec3 centroid, double size) {
+  const double v = mass_properties(a).volume, w = mass_properties(b).volume,
+               of_b = w * w / (v * v + w * w);
+  const auto [f, t] = pushed_out_of(a, b, size);
+  const auto [g, u] = pushed_out_of(b, a, size);
+  const Vec3 force = of_b * f - (1 - of_b) * g, torque = of_b * t - (1 - of_b) * u;
+  return {force, torque - cross(centroid, force)};
+}
+
+// A large box is a half-space: pressure is depth, so the force is the volume, through its centroid.
+TEST(PairForce, AgainstAHalfSpaceIsTheVolume) {
+  const auto wall = surface(make_box(20, 20, 10), true);
+  std::mt19937_64 random(1);
+  for (const Solid& solid : {make_torus(.4, .15, 48, 24), make_icosphere(.5, 3), make_cube(.6),
+                             make_box(.5, .5, .01), make_tetrahedron(.8)}) {
+    const auto tool = surface(solid, true);
+    SolidPair pair(tool, wall);
+    for (int k = 0; k < 6; ++k) {
+      Pose pose = test::random_pose(random, .2);
+      pose.translation.z += 5;
+      const SharedSolid shared = pair.measure(pose, {});
+      ASSERT_GT(shared.volume, 0);
+      const double error = 2e-5 * tool->volume();
+      EXPECT_NEAR(shared.force.z, shared.volume, error);
+      EXPECT_NEAR(std::hypot(shared.force.x, shared.force.y), 0, error);
+      EXPECT_NEAR(std::hypot(shared.torque.x, shared.torque.y), 0, error * tool->reach());
+    }
+  }
+}
+
+struct Pairing {
+  const char* name;
+  Solid a, b;
+  double most;  // mean error, of the smaller solid
+};
+
+TEST(PairForce, OfConvexSolidsAgreesWithCubature) {
+  const std::vector<Pairing> cases{
+      {"cubes", make_cube(1), make_cube(1), 5e-4},
+      {"tetrahedron and cube", make_tetrahedron(1.2), make_cube(1), 5e-4},
+      {"plate and cube", make_box(1, 1, .01), make_cube(1), 1.5e-3},
+      {"ball and box", make_icosphere(.5, 2), make_box(1, .8, .6), 5e-4}};
+  std::mt19937_64 random(2);
+  for (const Pairing& c : cases) {
+    SCOPED_TRACE(c.name);
+    const auto a = surface(c.a, true), b = surface(c.b, true);
+    SolidPair pair(a, b);
+    const double small = std::min(a->volume(), b->volume()),
+                 reach = std::min(a->reach(), b->reach());
+    double sum = 0, torques = 0;
+    int met = 0;
+    for (int k = 0; met < 4; ++k) {
+      ASSERT_LT(k, 100);
+      const Pose pose_a = test::random_pose(random, .45), pose_b = test::random_pose(random, .45);
+      const SharedSolid shared = pair.measure(pose_a, pose_b);
+      if (shared.volume < .01 * small) continue;
+      ++met;
+      const Truth truth =
+          truth_of(test::moved(c.a, pose_a), test::moved(c.b, pose_b), shared.centroid, reach / 30);
+      const double off = norm(shared.force - truth.force) / small,
+                   off_torque = norm(shared.torque - truth.torque) / (small * reach);
+      EXPECT_LE(off, 2e-3) << k;
+      EXPECT_LE(off_torque, 2e-3) << k;
+      sum += off, torques += off_torque;
+      if (norm(truth.force) < .1 * shared.volume) continue;
+      const double sine =
+          norm(cross(shared.force, truth.force)) / norm(shared.force) / norm(truth.force);
+      EXPECT_LE(std::asin(std::min(1.0, sine)) * 180 / M_PI, 1) << k;
+    }
+    EXPECT_LE(sum / met, c.most);
+    EXPECT_LE(torques / met, c.most);
+  }
+}
+
+// Along a path in steps of a four-thousandth of the reach nothing jumps: second differences are
+// small.
+TEST(PairForce, DoesNotJumpAlongAPath) {
+  const auto a = surface(make_torus(.4, .15, 48, 24), true),
+             b = surface(make_box(.6, .5, .4), true);
+  SolidPair pair(a, b);
+  const double small = std::min(a->volume(), b->volume()), step = a->reach() / 4000;
+  const Rotation turn = rotation_from_vector({.3, .7, .1});
+  std::vector<SharedSolid> path;
+  for (int k = 0; k < 200; ++k) path.push_back(pair.measure({turn, {.35 + k * step, .1, .05}}, {}));
+  ASSERT_GT(path[0].volume, .05 * small);
+  for (std::size_t k = 2; k < path.size(); ++k) {
+    const auto& [p, q, r] = std::tie(path[k - 2], path[k - 1], path[k]);
+    EXPECT_LE(std::abs(p.volume - 2 * q.volume + r.volume), 1e-6 * small);
+    EXPECT_LE(norm(p.force - 2 * q.force + r.force), 5e-4 * small);
+  }
+}
+
+// An enclosed solid is pushed toward the nearest face of the other.
+TEST(PairForce, ActsOnAnEnclosedSolid) {
+  const auto a = surface(make_cube(.2), true), b = surface(make_cube(2), true);
+  SolidPair pair(a, b);
+  const SharedSolid shared = pair.measure(at({.7, .1, -.2}), {});
+  EXPECT_NEAR(shared.volume, .008, 1e-11);
+  EXPECT_NEAR(shared.force.x, .008, 1e-5 * .008);
+  EXPECT_NEAR(std::hypot(shared.force.y, shared.force.z), 0, 1e-5 * .008);
+}
+
+// Far apart, at a touch and without force: nothing.
+TEST(PairForce, IsNothingWithoutContact) {
+  const auto a = surface(make_cube(1), true), b = surface(make_cube(1), true);
+  SolidPair pair(a, b);
+  for (const double place : {1.5, 3.0, 1e6}) {
+    const SharedSolid shared = pair.measure(at({place, 0, 0}), {});
+    EXPECT_EQ(shared.volume, 0);
+    EXPECT_EQ(shared.force, Vec3{});
+    EXPECT_EQ(shared.torque, Vec3{});
+  }
+}
+
+}  // namespace
+}  // namespace vpm
