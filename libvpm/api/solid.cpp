@@ -1,6 +1,8 @@
 #include <vpm/solid.h>
 #include <vpm/version.h>
 
+#include <nlohmann/json.hpp>
+
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -106,7 +108,7 @@ SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters) 
   refuse_uncertified("the solid", volume_of_spheres / checked.facts.volume,
                      certify(checked.solid, result.spheres, &checked.enclosure));
   Packing packing{std::move(result.spheres), checked.solid, made_by_library("vpm::pack")};
-  packing.provenance["solid_hash"] = content_hash(packing.solid);
+  packing.provenance.json()["solid_hash"] = content_hash(packing.solid);
   return HandleAccess::make<SpherePacking>(std::move(packing));
 }
 
@@ -119,7 +121,7 @@ Tool build_tool(const SpherePacking& spheres, const ToolParameters& parameters) 
   ToolModel model = build_tool_model(packing, options);
   if (parameters.calibrate) model.calibration = calibrate(model, packing.solid);
   model.provenance = made_by_library("vpm::build_tool");
-  model.provenance["packing"] = packing.provenance;
+  model.provenance.json()["packing"] = packing.provenance.json();
   return HandleAccess::make<Tool>(std::move(model));
 }
 

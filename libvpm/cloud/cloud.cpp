@@ -125,7 +125,7 @@ Cloud parse_cloud(std::vector<std::byte> bytes, const std::string& name) {
 
 void write_cloud(const std::string& path, const Cloud& cloud) {
   validate(cloud, path);
-  file::Writer writer(file::Kind::cloud, {{"unit", "m"}, {"provenance", cloud.provenance}});
+  file::Writer writer(file::Kind::cloud, {{"unit", "m"}, {"provenance", cloud.provenance.json()}});
   writer.add(kOrigin, 0, std::span(&cloud.origin, 1));
   writer.add(kPositions, 0, std::span(cloud.positions));
   writer.add(kNormals, 0, std::span(cloud.normals));

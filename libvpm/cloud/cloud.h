@@ -4,13 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/cloud/depth_image.h"
+#include "libvpm/file/provenance.h"
 
 namespace vpm {
 
@@ -29,7 +29,7 @@ struct Cloud {
   // Pixel v * width + u of each point; empty without a sensor.
   std::vector<std::uint32_t> pixels;
   std::optional<CloudSensor> sensor;
-  nlohmann::json provenance;
+  file::Provenance provenance;
 
   std::size_t size() const { return positions.size(); }
 };

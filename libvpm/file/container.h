@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-namespace vpm::file {
+#include "libvpm/file/kind.h"
 
-enum class Kind : std::uint32_t { packing = 1, tool_model = 2, cloud = 3 };
+namespace vpm::file {
 
 // Name of a chunk: four characters, e.g. "SPHR".
 struct ChunkId {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "libvpm/file/container.h"
+#include "libvpm/file/kind.h"
 
 namespace vpm::file {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "libvpm/file/container.h"
+#include "libvpm/file/kind.h"
 
 namespace vpm::file {
 

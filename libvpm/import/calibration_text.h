@@ -1,7 +1,7 @@
 // Reads the texts of calibrations: numbers, numbers with names, JSON and YAML.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -74,7 +74,8 @@ Packing parse_packing(std::vector<std::byte> bytes, const std::string& name) {
 
 void write_packing(const std::string& path, const Packing& packing) {
   check(packing, path);
-  file::Writer writer(file::Kind::packing, {{"unit", "m"}, {"provenance", packing.provenance}});
+  file::Writer writer(file::Kind::packing,
+                      {{"unit", "m"}, {"provenance", packing.provenance.json()}});
   writer.add(kSpheres, 0, std::span(packing.spheres));
   writer.add(kVertices, 0, std::span(packing.solid.vertices));
   writer.add(kTriangles, 0, std::span(packing.solid.triangles));

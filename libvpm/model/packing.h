@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "libvpm/file/provenance.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
 
@@ -17,7 +17,7 @@ struct Packing {
   Solid solid;
   // Tool, version, parameters, hash of the input; no clock time, so that equal runs give equal
   // files.
-  nlohmann::json provenance;
+  file::Provenance provenance;
 };
 
 // Reads a packing from a file, from standard input ("-"), or from bytes. Throws Error(refused) if

@@ -153,7 +153,7 @@ void write_tool_model(const std::string& path, const ToolModel& model, const Sol
   validate(model, path);
   file::Writer writer(
       file::Kind::tool_model,
-      {{"unit", "m"}, {"solid_hash", model.solid_hash}, {"provenance", model.provenance}});
+      {{"unit", "m"}, {"solid_hash", model.solid_hash}, {"provenance", model.provenance.json()}});
   const ToolRecord tool{model.volume, model.center_of_mass, model.radius};
   writer.add(kTool, 0, std::span(&tool, 1));
   writer.add(kSpheres, 0, std::span(model.spheres));

@@ -7,10 +7,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "libvpm/file/provenance.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
 
@@ -96,7 +96,7 @@ struct ToolModel {
   std::vector<Sphere> spheres;          // largest first
   std::vector<Level> levels;            // at least one, ascending by sphere_count
   std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
-  nlohmann::json provenance;
+  file::Provenance provenance;
 
   // Returns the level with this many spheres, or the finest for 0. Throws Error(invalid_argument)
   // that lists the levels if there is none.

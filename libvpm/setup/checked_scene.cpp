@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "libvpm/core/box.h"
@@ -72,8 +73,9 @@ double size_of(const CheckedScene& scene) {
 
 SceneSource source_of(const Cloud& cloud) {
   SceneSource source;
-  if (!cloud.provenance.is_object() || !cloud.provenance.contains("parameters")) return source;
-  const nlohmann::json& told = cloud.provenance["parameters"];
+  const nlohmann::json& provenance = cloud.provenance.json();
+  if (!provenance.is_object() || !provenance.contains("parameters")) return source;
+  const nlohmann::json& told = provenance["parameters"];
   if (!told.is_object()) return source;
   if (told.contains("axes") && told["axes"].is_string())
     source.axes = axes_named(told["axes"].get<std::string>()).value_or(source.axes);

@@ -1,6 +1,7 @@
 #include "libvpm/setup/size_check.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace vpm {
@@ -33,7 +34,7 @@ Doubt doubt_of(double tool, double scene, const CheckedScene& points) {
 // Returns the `scale` that the mesh was read with, as far as the model's provenance tells it.
 double told_scale(const ToolModel& model) {
   const nlohmann::json::json_pointer place("/packing/parameters/scale");
-  const nlohmann::json& told = model.provenance;
+  const nlohmann::json& told = model.provenance.json();
   return told.contains(place) && told[place].is_number() ? told[place].get<double>() : 1;
 }
 

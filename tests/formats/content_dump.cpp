@@ -73,14 +73,17 @@ json dump(const Packing& packing) {
   return {{"spheres", list(packing.spheres)},
           {"vertices", list(packing.solid.vertices)},
           {"triangles", list(packing.solid.triangles)},
-          {"provenance", packing.provenance}};
+          {"provenance", packing.provenance.json()}};
 }
 
 json dump(const ToolModel& model) {
-  json all{{"volume", model.volume},         {"center_of_mass", of(model.center_of_mass)},
-           {"reach", model.radius},          {"solid_hash", model.solid_hash},
-           {"spheres", list(model.spheres)}, {"levels", list(model.levels)},
-           {"provenance", model.provenance}};
+  json all{{"volume", model.volume},
+           {"center_of_mass", of(model.center_of_mass)},
+           {"reach", model.radius},
+           {"solid_hash", model.solid_hash},
+           {"spheres", list(model.spheres)},
+           {"levels", list(model.levels)},
+           {"provenance", model.provenance.json()}};
   if (!model.calibration.empty()) all["calibration"] = list(model.calibration);
   return all;
 }
@@ -90,7 +93,7 @@ json dump(const Cloud& cloud) {
            {"positions", list(cloud.positions)},
            {"normals", list(cloud.normals)},
            {"radii", std::vector<double>(cloud.radii.begin(), cloud.radii.end())},
-           {"provenance", cloud.provenance}};
+           {"provenance", cloud.provenance.json()}};
   if (cloud.sensor) {
     const auto& [camera, depth] = *cloud.sensor;
     const Rotation& r = camera.to_world.rotation;

@@ -1,6 +1,7 @@
 #include "tests/formats/golden_content.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace vpm::golden {
 namespace {

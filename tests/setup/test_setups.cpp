@@ -1,6 +1,7 @@
 #include "tests/setup/test_setups.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "libvpm/cloud/normals.h"
@@ -25,7 +26,7 @@ ToolModel cube_of(double across, Vec3 center, double scale) {
         {narrow(at), static_cast<float>(piece / 2), 1.0 / (kPieces * kPieces * kPieces)});
   }
   model.levels.push_back(std::move(level));
-  model.provenance["packing"]["parameters"]["scale"] = scale;
+  model.provenance.json()["packing"]["parameters"]["scale"] = scale;
   return model;
 }
 
@@ -61,7 +62,7 @@ Cloud scanned_cube(double across, double spacing) {
 }
 
 Cloud told(Cloud cloud, const std::string& key, const nlohmann::json& value) {
-  cloud.provenance["parameters"][key] = value;
+  cloud.provenance.json()["parameters"][key] = value;
   return cloud;
 }
 

@@ -21,6 +21,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/file/container.h"
+#include "libvpm/file/kind.h"
 
 namespace vpm::tools {
 

@@ -78,13 +78,13 @@ SolidOptions options_of(const nlohmann::json& provenance, const std::string& pac
 
 void check_mesh(const Packing& packing, const Arguments& a) {
   const nlohmann::json::json_pointer node_at("/parameters/node");
-  const bool has_node =
-      packing.provenance.contains(node_at) && packing.provenance.at(node_at).is_string();
-  const std::string node = has_node ? packing.provenance.at(node_at).get<std::string>() : "";
+  const bool has_node = packing.provenance.json().contains(node_at) &&
+                        packing.provenance.json().at(node_at).is_string();
+  const std::string node = has_node ? packing.provenance.json().at(node_at).get<std::string>() : "";
   const RawMesh mesh = parse_mesh(file::read_all(a.mesh), a.mesh, node);
   const std::string expected = content_hash(packing.solid);
   const std::string found =
-      content_hash(make_solid(mesh, options_of(packing.provenance, a.packing)).solid);
+      content_hash(make_solid(mesh, options_of(packing.provenance.json(), a.packing)).solid);
   if (found != expected) {
     refuse(a.packing + " was not made of " + a.mesh + ": their solids have the hashes " + expected +
            " and " + found + "; pack this mesh, or leave --mesh out");
@@ -116,10 +116,10 @@ void run(const Program& program, Arguments& a) {
   ToolModel model = build_tool_model(packing, a.options, &quality);
   if (a.calibrate) model.calibration = calibrate(model, packing.solid);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  model.provenance = {{"tool", program.name()},
-                      {"version", VPM_VERSION},
-                      {"parameters", program.parameters()},
-                      {"packing", packing.provenance}};
+  model.provenance.json() = {{"tool", program.name()},
+                             {"version", VPM_VERSION},
+                             {"parameters", program.parameters()},
+                             {"packing", packing.provenance.json()}};
   const Solid mesh = view::simplified(packing.solid, view::kMostTriangles);
   write_tool_model(a.output, model, mesh);
   if (!a.view.empty()) write_model_view(a.view, a.packing, model, mesh);

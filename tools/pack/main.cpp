@@ -308,11 +308,11 @@ Packing make_packing(const Program& program, const std::string& input_hash, Chec
   for (const char* const name : {"validate", "link"}) parameters.erase(name);  // no effect on it
   Packing packing;
   packing.spheres = std::move(spheres);
-  packing.provenance = {{"tool", program.name()},
-                        {"version", VPM_VERSION},
-                        {"parameters", parameters},
-                        {"input_hash", input_hash},
-                        {"solid_hash", content_hash(checked.solid)}};
+  packing.provenance.json() = {{"tool", program.name()},
+                               {"version", VPM_VERSION},
+                               {"parameters", parameters},
+                               {"input_hash", input_hash},
+                               {"solid_hash", content_hash(checked.solid)}};
   packing.solid = std::move(checked.solid);
   return packing;
 }
@@ -354,7 +354,7 @@ void run(const Program& program, Arguments a) {
   if (!a.output.empty()) {
     Packing packing =
         make_packing(program, file::content_hash({bytes}), std::move(checked), result.spheres);
-    if (scene) packing.provenance["scene"] = scene_report(*scene);
+    if (scene) packing.provenance.json()["scene"] = scene_report(*scene);
     write_packing(a.output, packing);
   }
   say_summary(program, result, sides);

@@ -126,12 +126,12 @@ void PoseView::add_facts(view::Page& page) const {
                std::to_string(models_[t]->spheres.size()) + " spheres";
   page.set_summary(summary);
   for (std::size_t t = 0; t < models_.size(); ++t) {
-    page.add_fact("tool", names_[t] + maker_of(models_[t]->provenance));
+    page.add_fact("tool", names_[t] + maker_of(models_[t]->provenance.json()));
     page.add_fact("level", std::to_string(levels_[t]) + " of " +
                                std::to_string(models_[t]->spheres.size()) + " spheres");
   }
   for (const auto& [name, cloud] : clouds_)
-    page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance));
+    page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance.json()));
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
