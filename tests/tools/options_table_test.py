@@ -22,6 +22,7 @@ COLUMNS = {
     "`--coupling` in a cloud": IN_CLOUD | {"--coupling": "stiffness=500,damping=5", "--stiffness": "2"},
     "`--frames`": {"--tool": "t.vpmg", "--frames": "f", "--trajectory": "p.txt"},
     "several `--tool`": IN_CLOUD | {"--tool": ["t.vpmg", "u.vpmg"]},
+    "`--serve`": {"--tool": "t.vpmg", "--serve": None},
 }
 POSE = "0,0,1,0,0,0,1"
 # Values that each option accepts and that are not its default; all others take the name of a missing file.

@@ -171,6 +171,8 @@ void declare(CLI::App& app, Arguments& a) {
          "Poses that a device takes at once; answers come in their order. Changes no result")
       ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str();
+  app.add_flag("--serve", a.serve,
+               "Answer requests on standard input, one line of JSON for each, until it ends");
   declare_frames(app, a.replay);
   declare_outputs(app, a);
   declare_gone_options(app);
@@ -183,6 +185,13 @@ void check_names(const Arguments& a, const CommonOptions& common) {
     throw Error(ErrorKind::invalid_argument,
                 "only one of --tool, --cloud, --poses and --trajectory can be standard input");
   }
+  if (a.serve && (std::ranges::count(a.tools, "-") > 0 || a.cloud == "-"))
+    throw Error(
+        ErrorKind::invalid_argument,
+        "--serve reads its requests from standard input: name files for --tool and --cloud");
+  if (a.serve && a.output.ends_with(".csv"))
+    throw Error(ErrorKind::invalid_argument,
+                "--serve answers in JSON: let the name of --output end in .jsonl");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
   std::vector<std::string> inputs{a.cloud, a.poses, a.replay.frames, a.replay.trajectory,
                                   a.replay.camera_poses};

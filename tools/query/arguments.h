@@ -34,6 +34,7 @@ struct Arguments {
   bool for_scene = false, coherent = false, raw_points = false;
   std::string coupling;
   std::size_t batch = 1;
+  bool serve = false;
   ReplayArguments replay;
   std::string output = "-", spheres_out, stats, view;
 };

@@ -9,9 +9,11 @@
 
 namespace vpm::tools {
 
-CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
-  const std::string& name = setup.arguments.cloud;
-  const PointCloud cloud = PointCloud::read(name);
+CloudScene::CloudScene(QuerySetup& setup)
+    : CloudScene(setup, setup.arguments.cloud, PointCloud::read(setup.arguments.cloud)) {}
+
+CloudScene::CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud)
+    : setup_(setup) {
   const auto start = std::chrono::steady_clock::now();
   try {
     scene_.emplace(Body(cloud, setup.points));

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
@@ -20,6 +21,8 @@ class CloudScene {
   // Reads and prepares the cloud and adds it to the view, if there is one. Says what the sizes of
   // cloud and tools let doubt.
   explicit CloudScene(QuerySetup& setup);
+  // The same for a cloud that was read from the file `name`.
+  CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud);
 
   const Scene& scene() const { return *scene_; }
   // Returns the number of the cloud's points.

@@ -21,6 +21,8 @@ void run(Program& program, const Arguments& arguments) {
       return run_frames(setup);
     case Mode::several_tools:
       return run_several_tools(setup);
+    case Mode::server:
+      return run_server(setup);
   }
 }
 

@@ -22,31 +22,35 @@ struct Row {
 
 // Options that are not in this table go with all modes.
 constexpr Row kTable[] = {
-    // poses, batches, coupling, frames, several tools
+    // poses, batches, coupling, frames, several tools, server
     {"--tool",
-     {required, required, required, required, required},
+     {required, required, required, required, required, required},
      "give the .vpmg that vpm-graph wrote"},
     {"--cloud",
-     {required, required, required, no, required},
+     {required, required, required, no, required, yes},
      "give the .vpmc that vpm-normals wrote, or --frames"},
-    {"--pose", {either, either, no, no, either}},
-    {"--poses", {either, either, required, no, either}, "give the path of the haptic device"},
-    {"--batch", {yes, yes, no, no, yes}},
-    {"--coupling", {yes, no, yes, yes, no}},
-    {"--deadline-us", {yes, no, yes, yes, no}},
-    {"--coherent", {yes, no, yes, yes, no}},
-    {"--spheres-out", {yes, yes, yes, yes, no}},
-    {"--frames", {no, no, no, yes, no}},
-    {"--trajectory", {no, no, no, required, no}, "give the path of the tool through the frames"},
-    {"--rate", {no, no, no, yes, no}},
-    {"--camera-poses", {no, no, no, yes, no}},
-    {"--frame-rate", {no, no, no, yes, no}},
-    {"--frame-latency", {no, no, no, yes, no}},
-    {"--align-starts", {no, no, no, yes, no}},
-    {"--repeat-frames", {no, no, no, yes, no}},
-    {"--realtime", {no, no, no, yes, no}},
-    {"--intrinsics", {no, no, no, yes, no}},
-    {"--camera-pose", {no, no, no, yes, no}},
+    {"--pose", {either, either, no, no, either, no}},
+    {"--poses", {either, either, required, no, either, no}, "give the path of the haptic device"},
+    {"--batch", {yes, yes, no, no, yes, no}},
+    {"--coupling", {yes, no, yes, yes, no, no}},
+    {"--deadline-us", {yes, no, yes, yes, no, yes}},
+    {"--coherent", {yes, no, yes, yes, no, yes}},
+    {"--spheres-out", {yes, yes, yes, yes, no, no}},
+    {"--frames", {no, no, no, yes, no, no}},
+    {"--trajectory",
+     {no, no, no, required, no, no},
+     "give the path of the tool through the frames"},
+    {"--rate", {no, no, no, yes, no, no}},
+    {"--camera-poses", {no, no, no, yes, no, no}},
+    {"--frame-rate", {no, no, no, yes, no, no}},
+    {"--frame-latency", {no, no, no, yes, no, no}},
+    {"--align-starts", {no, no, no, yes, no, no}},
+    {"--repeat-frames", {no, no, no, yes, no, no}},
+    {"--realtime", {no, no, no, yes, no, no}},
+    {"--intrinsics", {no, no, no, yes, no, yes}},
+    {"--camera-pose", {no, no, no, yes, no, yes}},
+    {"--view", {yes, yes, yes, yes, yes, no}},
+    {"--serve", {no, no, no, no, no, yes}},
 };
 
 struct Pair {
@@ -85,6 +89,7 @@ constexpr Words kWords[kModes] = {
     {"a haptic device's path in a cloud", "chosen by --coupling without --frames"},
     {"recorded frames", "chosen by --frames"},
     {"several tools in a cloud", "chosen by more than one --tool"},
+    {"requests", "chosen by --serve"},
 };
 
 // True if both are the same text or the same number.
@@ -143,6 +148,7 @@ void refuse_missing_options(const CLI::App& app, Mode mode) {
 }  // namespace
 
 Mode mode_of(const Arguments& a) {
+  if (a.serve) return Mode::server;
   if (a.tools.size() > 1) return Mode::several_tools;
   if (!a.replay.frames.empty()) return Mode::frames;
   if (!a.coupling.empty()) return Mode::coupling;
@@ -156,6 +162,8 @@ void check_options(const CLI::App& app, Mode mode) {
     if (is_given(app, first) && is_given(app, second))
       refuse_usage(std::string(first) + " and " + second +
                    " exclude each other: leave one of them out");
+  if (mode == Mode::server && app.get_option("--tool")->count() > 1)
+    refuse_usage("--serve answers for one tool: give one --tool");
   refuse_missing_options(app, mode);
   for (const auto& [option, needed, advice] : kNeeds)
     if (is_given(app, option) && !is_given(app, needed))

@@ -10,13 +10,14 @@ namespace vpm::tools {
 
 // The table in mode.cpp has a column for each.
 enum class Mode {
-  poses,         // poses of one tool in a cloud, answered one by one
-  batches,       // such poses, many answered at once
-  coupling,      // path of a haptic device in a cloud
-  frames,        // path through recorded frames, with or without a haptic device
-  several_tools  // poses of several tools in a cloud, one by one or many at once
+  poses,          // poses of one tool in a cloud, answered one by one
+  batches,        // such poses, many answered at once
+  coupling,       // path of a haptic device in a cloud
+  frames,         // path through recorded frames, with or without a haptic device
+  several_tools,  // poses of several tools in a cloud, one by one or many at once
+  server          // requests on standard input, answered line by line
 };
-constexpr std::size_t kModes = 5;
+constexpr std::size_t kModes = 6;
 
 // Returns the mode that the options choose.
 Mode mode_of(const Arguments& arguments);
@@ -34,5 +35,6 @@ void run_poses(QuerySetup& setup);
 void run_coupling(QuerySetup& setup);
 void run_frames(QuerySetup& setup);
 void run_several_tools(QuerySetup& setup);
+void run_server(QuerySetup& setup);
 
 }  // namespace vpm::tools
