@@ -1,6 +1,7 @@
 #include "libvpm/file/sniff.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,8 @@ constexpr const char* kExport = "export it as OBJ, PLY or STL";
 constexpr const char* kExportMesh = "export a mesh from it, as OBJ, PLY or STL";
 
 constexpr const char* kSaveDepths = "save its depths as .npy, PFM or 16-bit PNG";
+constexpr const char* kExtractPng = "extract its depth images as 16-bit PNG, for example by ffmpeg";
+constexpr const char* kSaveNpy = "save its array as .npy";
 constexpr const char* kSaveArray = "save one of its arrays as 16-bit PNG";
 constexpr const char* kExportPly = "export it as PLY";
 constexpr const char* kToPack = "give it to vpm-pack";
@@ -48,13 +51,20 @@ constexpr Start kStarts[] = {
     {"riff"sv, "a WebP picture or a film", "give the 16-bit or float image", Holds::scan},
     {"#?r"sv, "a Radiance picture", "give the 16-bit or float image", Holds::scan},
     {"p7\n"sv, "a PAM picture", "save it as PGM, or as 16-bit PNG", Holds::scan},
-    {"\x80\x04\x95"sv, "a pickle of Python", "save its array as .npy", Holds::scan},
+    {"\x80\x02"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"\x80\x03"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"\x80\x04\x95"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"\x80\x05\x95"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"(dp0"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"(lp0"sv, "a pickle of Python", kSaveNpy, Holds::scan},
+    {"par1"sv, "a table in Parquet", "save it as CSV"},
+    {"arrow1\0\0"sv, "a table of Arrow", "save it as CSV"},
     {"%pdf"sv, "a PDF document", "give the file that was meant"},
     {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG", Holds::scan},
     {"matlab 5.0"sv, "a MATLAB file", kSaveArray, Holds::scan},
     {"matlab 7.3"sv, "a MATLAB file (HDF5)", kSaveArray, Holds::scan},
-    {"\x1a\x65\xdf\xa3"sv, "a Matroska recording (.mkv), such as an Azure Kinect's",
-     "extract its depth images as 16-bit PNG, for example by ffmpeg", Holds::scan},
+    {"\x1a\x65\xdf\xa3"sv, "a Matroska recording (.mkv), such as an Azure Kinect's", kExtractPng,
+     Holds::scan},
     {"#rosbag"sv, "a ROS bag", "extract its images or clouds first", Holds::scan},
     {"\x89mcap"sv, "an MCAP recording", "extract its images or clouds first", Holds::scan},
     {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL", Holds::scan},
@@ -88,6 +98,7 @@ constexpr Start kStarts[] = {
     {"sqlite format 3"sv, "a database of SQLite, such as a bag of ROS 2",
      "extract its images or clouds first", Holds::scan},
     {"pieh"sv, "a depth map of Sintel (.dpt) or optical flow (.flo)", kSaveDepths, Holds::scan},
+    {"\xff\xfe\0\0"sv, "text in UTF-32", "save it as UTF-8"},
     {"\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
     {"\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
     {"gltf\2\0\0\0"sv, "a scene in glTF", kToPack, Holds::mesh},
@@ -166,6 +177,52 @@ bool is_map_of_colmap(std::string_view bytes) {
   return true;
 }
 
+// True if zeros stand before or behind each of the first characters, all printable or ends of
+// lines.
+bool is_wide_text_without_mark(std::string_view text) {
+  constexpr std::size_t kLooked = 6;
+  if (text.size() < kLooked) return false;
+  const auto are_zero = [&](std::size_t first) {
+    for (std::size_t k = 0; k < kLooked; ++k) {
+      const bool is_text =
+          (text[k] >= ' ' && text[k] <= '~') || (text[k] >= '\t' && text[k] <= '\r');
+      if (k % 2 == first ? text[k] != '\0' : !is_text) return false;
+    }
+    return true;
+  };
+  return are_zero(0) || are_zero(1);
+}
+
+// True for the header of an array of numbers as MATLAB 4 wrote it: its type, rows, columns, whether
+// it is complex and the length of its name, which ends in 0.
+bool is_matlab_4(std::string_view bytes) {
+  constexpr std::size_t kHeader = 20, kLongestName = 64;
+  constexpr std::uint32_t kLargestType = 52;
+  if (bytes.size() < kHeader) return false;
+  const auto word = [&](std::size_t k) { return unsigned_at(bytes, 4 * k); };
+  const std::uint64_t name = word(4);
+  if (word(0) > kLargestType || word(1) == 0 || word(2) == 0 || word(3) > 1 || name < 2 ||
+      name > kLongestName || bytes.size() < kHeader + name)
+    return false;
+  const std::string_view letters = bytes.substr(kHeader, name);
+  return letters.find('\0') == name - 1 &&
+         std::ranges::all_of(letters.substr(0, name - 1), [](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+         });
+}
+
+// True for the payload of a message of ROS' compressedDepth that is coded by RVL: 12 bytes, of
+// which all are 0 for depths in integers, columns, rows, and fewer bytes than an image has.
+bool is_rvl_of_ros(std::string_view bytes) {
+  constexpr std::size_t kHeader = 12, kSizes = 8;
+  constexpr std::uint64_t kFewest = 16, kMost = 16384;  // columns or rows
+  if (bytes.size() <= kHeader + kSizes) return false;
+  if (bytes.substr(0, kHeader).find_first_not_of('\0') != bytes.npos) return false;
+  const std::uint64_t columns = unsigned_at(bytes, kHeader), rows = unsigned_at(bytes, kHeader + 4);
+  return columns >= kFewest && columns <= kMost && rows >= kFewest && rows <= kMost &&
+         bytes.size() - kHeader - kSizes < 2 * columns * rows;
+}
+
 // Tells formats that begin with no word of their own.
 std::optional<Content> kind_by_layout(std::string_view text) {
   constexpr std::size_t kCardMark = 72;  // IGES has cards of 80 columns
@@ -178,6 +235,19 @@ std::optional<Content> kind_by_layout(std::string_view text) {
     if (unsigned_at(text, 2) == text.size())
       return Content{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
   }
+  if (is_wide_text_without_mark(text))
+    return Content{"text in UTF-16 without its mark", "save it as UTF-8"};
+  if (text.size() > 8 && text.substr(4, 4) == "ftyp")
+    return Content{"a video (MP4, MOV) or a HEIC picture", kExtractPng, Holds::scan};
+  constexpr std::size_t kMarkOfTar = 257;
+  if (text.size() > kMarkOfTar && text.substr(kMarkOfTar).starts_with("ustar"))
+    return Content{"an archive (tar)", "unpack it first: tar xf"};
+  if (is_rvl_of_ros(text)) {
+    return Content{"a message of ROS' compressedDepth, coded by RVL",
+                   "decode it by compressed_depth_image_transport, and save it as 16-bit PNG",
+                   Holds::scan};
+  }
+  if (is_matlab_4(text)) return Content{"a MATLAB file", kSaveArray, Holds::scan};
   if (is_mesh_of_mujoco(text)) return Content{"a mesh of MuJoCo (.msh)", kExport, Holds::mesh};
   if (is_map_of_colmap(text.substr(0, 64)))
     return Content{"a depth map of COLMAP", kSaveDepths, Holds::scan};

@@ -29,6 +29,8 @@ void append_utf8(char32_t code, std::string& text) {
 }  // namespace
 
 bool is_utf16(std::string_view text) {
+  using namespace std::string_view_literals;
+  if (text.starts_with("\xFF\xFE\0\0"sv)) return false;  // UTF-32
   return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
 

@@ -45,8 +45,8 @@ float median_of(std::span<const float> values, bool swaps) {
   return *middle;
 }
 
-// True if there are so many different values that the order of their bytes shows in how smooth
-// they are; few may stand closer by chance in the wrong order.
+// True if there are so many different values that what they have in common is no chance: the order
+// of their bytes, or a number that divides them.
 bool has_many_values(std::span<const float> values) {
   constexpr std::ptrdiff_t kMany = 32;
   std::vector<bool> found(1U << 16);
@@ -67,6 +67,14 @@ bool have_low_bytes(std::span<const float> values) {
     low += static_cast<std::uint16_t>(value) % 256 != 0;
   }
   return kSome * low > measured;
+}
+
+// True if both bytes of all values are the same, as where 8 bits were widened to 16.
+bool are_of_equal_bytes(std::span<const float> values) {
+  constexpr int kBothBytes = 257;
+  return std::ranges::all_of(values, [](float value) {
+    return !is_value(value) || static_cast<std::uint16_t>(value) % kBothBytes == 0;
+  });
 }
 
 // True if the exchanged bytes give millimetres that sensors reach, and the values are beyond them.
@@ -101,6 +109,21 @@ std::uint16_t rotated(std::uint16_t bits) {
   return static_cast<std::uint16_t>((bits >> 3) | (bits << 13));
 }
 
+// True if a number divides nearly all values, as where they are those of a sensor's steps.
+bool have_common_step(std::span<const float> values) {
+  constexpr std::size_t kFew = 10;  // one value of so many
+  for (const int step : {2, 3, 5, 7}) {
+    std::size_t measured = 0, others = 0;
+    for (const float value : values) {
+      if (!is_value(value)) continue;
+      ++measured;
+      others += static_cast<std::uint16_t>(value) % step != 0;
+    }
+    if (kFew * others < measured) return true;
+  }
+  return false;
+}
+
 // What neighbours that differ tell of a rotation by three bits.
 struct RotationSigns {
   std::size_t pairs = 0;
@@ -125,43 +148,49 @@ RotationSigns rotation_signs(std::span<const float> values, std::size_t width) {
   return signs;
 }
 
-// Returns a warning if nearly all values look rotated by three bits, and are depths that no camera
-// reaches unless they are rotated back, or cross there from the highest values to the lowest. Other
-// values may be multiples of 8 because a sensor's steps, or a program's, are so.
+// Returns what rotated values would be, "1.03 m (SUN3D)", by the unit that is told or either usual
+// one. `median` is that of the values rotated back.
+std::string rotated_back_text(double median, const std::optional<double>& units_per_metre) {
+  constexpr double kRoom = 4, kFarthest = 10;       // m: medians of depth cameras
+  constexpr double kUsual = 1000, kTenths = 10000;  // units per metre
+  const double there = median / units_per_metre.value_or(kUsual);
+  if (units_per_metre || there <= kRoom)
+    return ", which makes that " + metres_text(there) + " (SUN3D)";
+  return (there > kFarthest
+              ? ""
+              : ", which makes that " + metres_text(there) + " (SUN3D), or `decode` rotated") +
+         std::string(" and `depth_scale` 10000, which make that ") + metres_text(median / kTenths) +
+         " (APC)";
+}
+
+// Returns a warning if nearly all values may be rotated by three bits. They surely are where they
+// cross from the highest values to the lowest between neighbours. Multiples of 8 may be so because
+// a sensor's steps, or a program's, are so: of many of them it is told what they would be if they
+// were rotated, unless that is nearer than depth cameras measure, or they have a larger step.
 Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
                            const std::optional<double>& units_per_metre) {
-  constexpr double kFar = 7, kFarthest = 20, kRoom = 4;  // m: median, largest, median decoded
-  constexpr double kUsual = 1000, kTenths = 10000;       // units per metre
-  constexpr std::size_t kTail = 50;                      // one value of so many is beyond
+  constexpr double kNearest = 0.3;  // m: median rotated back
+  constexpr double kUsual = 1000;   // units per metre
   constexpr std::size_t kFewestPairs = 64, kFewestCrossed = 8;
   constexpr double kNearlyAll = 0.9;
-  std::vector<float> measured, decoded;
-  for (const float value : values) {
-    if (!is_value(value) || value > 65534) continue;
-    measured.push_back(value);
-    decoded.push_back(rotated(static_cast<std::uint16_t>(value)));
-  }
-  if (measured.empty()) return {};
-  const auto metres = [&](std::vector<float>& all, std::size_t rank, double scale) {
-    const auto at = all.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(all.begin(), at, all.end());
-    return *at / scale;
-  };
-  const std::size_t half = measured.size() / 2,
-                    most = measured.size() - 1 - measured.size() / kTail;
-  const double scale = units_per_metre.value_or(kUsual), median = metres(measured, half, scale);
   const RotationSigns signs = rotation_signs(values, width);
-  const bool is_far = median > kFar || metres(measured, most, scale) > kFarthest;
-  if (signs.pairs < kFewestPairs || (!is_far && signs.crossed < kFewestCrossed) ||
+  if (signs.pairs < kFewestPairs ||
       static_cast<double>(signs.nearer) < kNearlyAll * static_cast<double>(signs.pairs))
     return {};
-  const double there = metres(decoded, half, scale);
-  const bool are_tenths = !units_per_metre && there > kRoom;
-  return {{true, "its values look rotated by three bits: as they are, their median is " +
-                     metres_text(median) + "; give `decode` rotated" +
-                     (are_tenths ? " and `depth_scale` 10000, which make that " +
-                                       metres_text(metres(decoded, half, kTenths)) + " (APC)"
-                                 : ", which makes that " + metres_text(there) + " (SUN3D)")}};
+  std::vector<float> back;
+  for (const float value : values) {
+    const bool counts = is_value(value) && value <= 65534;
+    back.push_back(counts ? rotated(static_cast<std::uint16_t>(value)) : 0);
+  }
+  const double scale = units_per_metre.value_or(kUsual), median = median_of(back, false);
+  const std::string now = metres_text(median_of(values, false) / scale);
+  const std::string cure = "give `decode` rotated" + rotated_back_text(median, units_per_metre);
+  if (signs.crossed >= kFewestCrossed)
+    return {{true, "its values look rotated by three bits: as they are, their median is " + now +
+                       "; " + cure}};
+  if (median < kNearest * scale || !has_many_values(values) || have_common_step(back)) return {};
+  return {{true, "its values are multiples of 8, and their median is " + now +
+                     "; if they are rotated by three bits, " + cure}};
 }
 
 // Returns a warning about 16-bit values of which one byte is not used, that look rotated by three
@@ -173,6 +202,11 @@ Remarks coding_suspicions(std::span<const float> values, std::size_t width,
     return {{true,
              "all values are multiples of 256, like those of 8 bits; if their bytes stand in the "
              "other order, give `decode` swapped"}};
+  }
+  if (has_many_values(values) && are_of_equal_bytes(values)) {
+    return {{true,
+             "all values are multiples of 257, as 8 bits are that were widened to 16; if so, give "
+             "the image that they were made of"}};
   }
   if (Remarks rotated = rotation_suspicion(values, width, units_per_metre); !rotated.empty())
     return rotated;
@@ -258,30 +292,32 @@ bool decodes(const DepthDecoding& decoding) {
   return decoding.swapped || decoding.rotated || decoding.disparity;
 }
 
-// Puts the bytes of values into their order, where that is not told.
-void find_byte_order(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
+// Puts the bytes of values into their order, where that is not told. Returns false if it is
+// doubted.
+bool find_byte_order(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
                      Remarks& remarks) {
-  if (reading.decoding.swapped || reading.decoding.big_endian) return;
+  if (reading.decoding.swapped || reading.decoding.big_endian) return true;
   const bool is_looked_at = reading.looks_for_mistakes && !decodes(reading.decoding);
-  if (!raw.may_be_swapped && !is_looked_at) return;
+  if (!raw.may_be_swapped && !is_looked_at) return true;
   if (!look_swapped(values, raw.width)) {
-    if (raw.may_be_swapped && is_looked_at && are_depths_only_if_swapped(values))
-      remarks.push_back({true,
-                         "as the standard of PGM says, half of its values are above 20000; if they "
-                         "stand with the low byte first, give `decode` swapped"});
-    return;
+    if (!raw.may_be_swapped || !is_looked_at || !are_depths_only_if_swapped(values)) return true;
+    remarks.push_back({true,
+                       "as the standard of PGM says, half of its values are above 20000; if they "
+                       "stand with the low byte first, give `decode` swapped"});
+    return false;
   }
   if (!raw.may_be_swapped) {
     remarks.push_back(
         {true,
          "neighbouring values differ as if the order of their two bytes were wrong; if so, give "
          "`decode` swapped"});
-    return;
+    return false;
   }
   for (float& value : values) value = decoded(value, {.swapped = true});
   remarks.push_back({false,
                      "its values stand with the low byte first, and are read so; `decode` "
                      "big-endian reads them as the standard of PGM says"});
+  return true;
 }
 
 // Replaces the values by what they code. Returns true if they look coded still.
@@ -295,11 +331,12 @@ bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading&
   }
   if (reading.decoding.big_endian && !raw.may_be_swapped)
     remarks.push_back({true, "`decode` big-endian is not used: it is no binary PGM"});
-  find_byte_order(values, raw, reading, remarks);
+  const bool is_in_order = find_byte_order(values, raw, reading, remarks);
   if (decodes(reading.decoding)) {
     for (float& value : values) value = decoded(value, reading.decoding);
     return false;
   }
+  if (!is_in_order) return true;
   const Remarks suspicions = reading.looks_for_mistakes
                                  ? coding_suspicions(values, raw.width, reading.units_per_metre)
                                  : Remarks{};
@@ -383,11 +420,12 @@ DepthDecoding decoding_from_text(const std::string& text) {
 
 DepthImage depth_in_metres_of(const RawDepth& raw, const Intrinsics& intrinsics,
                               const DepthReading& reading, const std::string& name,
-                              Remarks& remarks) {
+                              Remarks& remarks, bool* told_coded) {
   append(remarks, raw.remarks);
   if (!reading.units_per_metre) append(remarks, raw.unit_remarks);
   std::vector<float> values = raw.values;
   const bool look_coded = decode(values, raw, reading, name, remarks);
+  if (told_coded != nullptr) *told_coded = look_coded;
   remove_markers(values, reading, remarks);
   // Disparities are metres by now.
   const double usual = reading.decoding.disparity ? 1 : raw.usual_units_per_metre();

@@ -37,9 +37,10 @@ struct DepthReading {
 
 // Returns the depth in metres, 0 where nothing was measured. Appends remarks on markers, and on
 // values that look as if they were coded otherwise. Throws Error(invalid_argument) for a decoding
-// of values that have not 16 bits.
+// of values that have not 16 bits. Sets *look_coded, if given, to whether values were said to look
+// coded.
 DepthImage depth_in_metres_of(const RawDepth& raw, const Intrinsics& intrinsics,
                               const DepthReading& reading, const std::string& name,
-                              Remarks& remarks);
+                              Remarks& remarks, bool* look_coded = nullptr);
 
 }  // namespace vpm

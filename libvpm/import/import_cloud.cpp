@@ -142,7 +142,7 @@ std::string why_nothing(const RawDepth& raw, const Intrinsics& k, const DepthRea
 ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose& to_world,
                            const std::string& name, const DepthReading& reading) {
   ImportedScan scan;
-  DepthImage depth = depth_in_metres_of(raw, k, reading, name, scan.remarks);
+  DepthImage depth = depth_in_metres_of(raw, k, reading, name, scan.remarks, &scan.looks_coded);
   scan.width = depth.width;
   scan.height = depth.height;
   scan.invalid = count_invalid(depth);
@@ -197,7 +197,8 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
   append(imported.remarks, scan.remarks);
   imported.facts =
       facts_of(imported.cloud, imported.invalid, std::size_t{imported.width} * imported.height);
-  append(imported.remarks, improbable_depths(imported.facts, options.depth.units_per_metre));
+  if (!scan.looks_coded)  // of several causes one is said
+    append(imported.remarks, improbable_depths(imported.facts, options.depth.units_per_metre));
   if (options.flip && scan.image)
     imported.remarks.push_back(
         {true, "`flip` is not used: normals estimated from depth face the camera"});

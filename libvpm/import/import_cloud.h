@@ -62,6 +62,7 @@ struct ImportedScan {
   std::size_t invalid = 0;
   std::size_t without_normal = 0;  // counts points
   bool intrinsics_recovered = false;
+  bool looks_coded = false;  // values look coded, as remarks tell, so that depths may be others
   Remarks remarks;
 };
 

@@ -159,7 +159,11 @@ std::optional<std::string> PoseReader::next_line(bool stops_at_blank) {
     const bool is_comment = comment < line->size();
     if (is_comment) take_names(line->substr(comment));
     line->resize(comment);
-    if (line_ == 1 && take_names(*line)) continue;
+    if (line_ == heading_ && line->starts_with("sep=")) {  // as Excel writes and wants it
+      ++heading_;
+      continue;
+    }
+    if (line_ == heading_ && take_names(*line)) continue;
     if (line->find_first_not_of(kBlank) != std::string::npos) return line;
     has_passed_blank_ = has_passed_blank_ || !is_comment;
     if (stops_at_blank && !is_comment) return "";

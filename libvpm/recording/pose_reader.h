@@ -101,6 +101,7 @@ class PoseReader {
   std::optional<PoseNames> names_;
   int rows_ = 0;  // lines of each matrix: 3 or 4, 0 before the first
   bool has_passed_blank_ = false;
+  std::size_t heading_ = 1;          // number of the line that may name the columns
   std::optional<Line> ahead_;        // has been read already
   std::size_t read_ = 0, line_ = 0;  // lines read, and the line of the last pose
   std::vector<TimedPose> list_;      // poses of the last line

@@ -180,12 +180,25 @@ void refuse_if_frames_lie_below(const fs::path& folder) {
          folder.string(), "give `frames` " + first.string());
 }
 
+// Refuses a folder that is a bag of ROS 2, or that holds one.
+void refuse_if_bag(const fs::path& folder) {
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
+       entry.increment(fault)) {
+    const fs::path ending = entry->path().extension();
+    if (ending == ".bag" || ending == ".mcap" || ending == ".db3")
+      refuse("no frames in it, but a recording of ROS, " + entry->path().filename().string(),
+             folder.string(), "extract its depth images first");
+  }
+}
+
 void read_folder(const fs::path& folder, double frame_rate, Recording& recording) {
   for (const char* list : {"depth.txt", "associations.txt"}) {
     if (is_file(folder / list)) return read_list(folder / list, recording);
   }
   const std::vector<fs::path> files = files_of(folder);
   if (files.empty()) refuse_if_frames_lie_below(folder);
+  if (files.empty()) refuse_if_bag(folder);
   if (files.empty())
     refuse("no frames in it", folder.string(),
            "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd, .ply or .vpmc files, or depth.txt "

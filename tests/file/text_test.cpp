@@ -79,6 +79,24 @@ TEST(Sniff, NamesWhatPeopleGiveByMistake) {
   EXPECT_EQ(what("%PDF-1.7"), "a PDF document");
   EXPECT_EQ(what("MATLAB 5.0 MAT-file, Platform: posix"), "a MATLAB file");
   EXPECT_EQ(what("MATLAB 7.3 MAT-file, Platform: posix"), "a MATLAB file (HDF5)");
+  EXPECT_EQ(what({"\0\0\0\0\3\0\0\0\3\0\0\0\0\0\0\0\2\0\0\0K\0\0\0\0\0\0\0\0\0", 30}),
+            "a MATLAB file");
+  EXPECT_EQ(what({"\0\0\0\0\3\0\0\0\3\0\0\0\0\0\0\0\2\0\0\0\1\0\0\0\0\0\0\0\0\0", 30}), "");
+  for (const std::string_view start :
+       {"\x80\x02]q", "\x80\x03}q", "\x80\x04\x95\x10", "\x80\x05\x95\x10", "(dp0\n"})
+    EXPECT_EQ(what(start), "a pickle of Python");
+  EXPECT_EQ(what({"\0\0\0\x20"
+                  "ftypisom\0\0",
+                  14}),
+            "a video (MP4, MOV) or a HEIC picture");
+  EXPECT_EQ(what("1.png" + std::string(252, '\0') + "ustar"), "an archive (tar)");
+  EXPECT_EQ(what({"\0\0\0\0\0\0\0\0\0\0\0\0\xa0\0\0\0\x78\0\0\0\1\2\3\4", 24}),
+            "a message of ROS' compressedDepth, coded by RVL");
+  EXPECT_EQ(what({"PAR1\x15\0", 6}), "a table in Parquet");
+  EXPECT_EQ(what({"0\0.\0005\0 \0", 8}), "text in UTF-16 without its mark");
+  EXPECT_EQ(what({"\0000\0.\0005\0\n", 8}), "text in UTF-16 without its mark");
+  EXPECT_EQ(what({"\xff\xfe\0\0000\0\0\0", 8}), "text in UTF-32");
+  EXPECT_EQ(what({"1 0\0 0", 6}), "");
   EXPECT_EQ(what("\x1a\x45\xdf\xa3\xa3"), "a Matroska recording (.mkv), such as an Azure Kinect's");
   EXPECT_EQ(what("# fx fy cx cy\n1 2 3 4\n"), "");
   EXPECT_EQ(what("v 0 0 0\nv 1 0 0\n"), "");
@@ -131,6 +149,8 @@ TEST(Text, Utf16BecomesUtf8) {
               (std::vector<std::string>{"a b", "c", "d"}));
   }
   EXPECT_EQ(utf8_of("\xFF\xFE"), "");
+  const std::string of_32_bits("\xFF\xFE\0\0x\0\0\0", 8);
+  EXPECT_EQ(utf8_of(of_32_bits), of_32_bits);
   EXPECT_EQ(utf8_of("plain"), "plain");
 }
 

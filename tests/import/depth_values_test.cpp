@@ -153,13 +153,55 @@ TEST(DepthValues, RotatedValuesAreToldByMostOfThemAndByTheirDepths) {
   EXPECT_FALSE(told.remarks[0].text.find("depth_scale") < told.remarks[0].text.size());
 }
 
+TEST(DepthValues, NearValuesMayBeRotatedAndAreAskedAbout) {
+  for (const auto& [near, far] : {std::pair{400, 900}, {500, 800}, {600, 3000}}) {
+    const Metres read = metres(image_of(rotated_left(corridor(near, far, 320 * 20)), 320, true));
+    ASSERT_EQ(read.remarks.size(), 1U) << near;
+    EXPECT_TRUE(
+        says(read.remarks[0].text, "if they are rotated by three bits, give `decode` rotated"))
+        << read.remarks[0].text;
+  }
+}
+
+// Of far depths both usual units may be meant.
+TEST(DepthValues, RotatedValuesOfTwoUnitsAreAChoice) {
+  const Metres read = metres(image_of(rotated_left(corridor(5000, 7500, 320 * 20)), 320, true));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  for (const char* const part : {"(SUN3D), or ", "`depth_scale` 10000", "(APC)"})
+    EXPECT_TRUE(says(read.remarks[0].text, part)) << read.remarks[0].text;
+}
+
+TEST(DepthValues, SwappedBytesAreTheOnlyCauseThatIsSaid) {
+  std::vector<float> values = corridor(1400, 2000, 320 * 20);
+  for (float& value : values) value = swapped(value);
+  bool look_coded = false;
+  Remarks remarks;
+  depth_in_metres_of(image_of(values, 320, true), kCamera, {}, "file", remarks, &look_coded);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(says(remarks[0].text, "`decode` swapped"));
+  EXPECT_TRUE(look_coded);
+}
+
+TEST(DepthValues, EightBitsThatWereWidenedAreSaid) {
+  for (const float factor : {256.F, 257.F}) {
+    std::vector<float> values = corridor(50, 250, 320 * 20);
+    for (float& value : values) value *= factor;
+    const Metres read = metres(image_of(values, 320, true));
+    ASSERT_EQ(read.remarks.size(), 1U) << factor;
+    EXPECT_TRUE(says(read.remarks[0].text, "8 bits")) << read.remarks[0].text;
+  }
+}
+
 TEST(DepthValues, MultiplesOfEightAreNotAlwaysRotated) {
   constexpr std::size_t kCount = 320 * 20;
   for (const double step : {8.0, 10.0, 16.0, 24.0, 40.0})
     for (const auto& [near, far] : {std::pair{500, 1200}, {1500, 4000}, {3000, 9500}}) {
       std::vector<float> values = corridor(near, far, kCount);
       for (float& value : values) value = static_cast<float>(step * std::round(value / step));
-      EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty()) << step << " " << near;
+      const Remarks said = metres(image_of(values, 320, true)).remarks;
+      // Steps of 8 far off may be either, which is worded as a choice.
+      EXPECT_EQ(said.size(), step == 8 && near == 3000 ? 1U : 0U) << step << " " << near;
+      for (const Remark& remark : said) EXPECT_TRUE(says(remark.text, "; if they are rotated"));
     }
   for (const double per_square_metre : {0.0015, 0.003}) {  // steps of a stereo camera, of a Kinect
     std::vector<float> values = corridor(800, 9500, kCount);
@@ -169,6 +211,10 @@ TEST(DepthValues, MultiplesOfEightAreNotAlwaysRotated) {
     }
     EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty()) << per_square_metre;
   }
+  // A wall whose few values happen to be multiples of 8.
+  std::vector<float> wall(kCount);
+  for (std::size_t k = 0; k < kCount; ++k) wall[k] = static_cast<float>(8000 + 8 * (k % 5));
+  EXPECT_TRUE(metres(image_of(wall, 320, true)).remarks.empty());
   // Far depths whose values do not tell of a rotation, and eighths of millimetres, told.
   EXPECT_TRUE(metres(image_of(corridor(9000, 60000, kCount), 320, true)).remarks.empty());
   std::vector<float> eighths = corridor(800, 4000, kCount);

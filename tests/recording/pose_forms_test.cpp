@@ -172,6 +172,8 @@ TEST(PoseForms, TheScaleOfAMatrixIsTold) {
 
 TEST(PoseForms, TablesAreReadOrTellTheColumn) {
   EXPECT_EQ(read_all_poses("5;2;3;0;0;0;1\n6; 2; 3; 0; 0; 0; 1\n").x, (Numbers{5, 6}));
+  EXPECT_EQ(read_all_poses("sep=;\r\n5;2;3;0;0;0;1\r\n").x, Numbers{5});
+  EXPECT_EQ(read_all_poses("sep=;\r\nx;y;z;qw;qx;qy;qz\r\n5;2;3;1;0;0;0\r\n").x, Numbers{5});
   for (const auto& [text, words] : std::vector<std::pair<const char*, const char*>>{
            {"0,5;2;3;0;0;0;1\n", "decimals with a point"},
            {"5;2;;0;0;0;1\n", "number 3 is missing: nothing stands between the semicolons"},

@@ -282,6 +282,11 @@ TEST_F(ARecording, KnowsItsCamera) {
 TEST_F(ARecording, IsRefusedWithTheReason) {
   const auto says_why = [&](const std::string& why) { return says(refusal([&] { read(); }), why); };
   EXPECT_TRUE(says_why("no frames in it"));
+  for (const std::string bag : {"a.bag", "a_0.mcap", "a_0.db3"}) {
+    write(bag);
+    EXPECT_TRUE(says_why("no frames in it, but a recording of ROS, " + bag));
+    std::filesystem::remove(path(bag));
+  }
   write("one.png");
   EXPECT_TRUE(says_why("neither a time"));
   std::filesystem::remove(path("one.png"));

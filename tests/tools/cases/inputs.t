@@ -31,7 +31,7 @@ $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --invalid 9 --for
 $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --range 0.1,5 --force 2>&1 | wc -l
 0
 $ vpm-normals rotated.pgm -o rotated.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: warning: rotated.pgm: its values look rotated by three bits: as they are, their median is 8.26 m; give --decode rotated, which makes that 1.03 m (SUN3D)
+2> vpm-normals: warning: rotated.pgm: its values are multiples of 8, and their median is 8.26 m; if they are rotated by three bits, give --decode rotated, which makes that 1.03 m (SUN3D)
 $ vpm-normals rotated.pgm --export rotated.ply --intrinsics 60,60,31.5,23.5 --decode rotated && cmp rotated.ply wall.npy.ply
 $ vpm-normals wall.npy -o x.vpmc --intrinsics 60,60,31.5,23.5 --decode rotated
 2> vpm-normals: error: wall.npy: --decode is for integers of 16 bits, which this image has not
