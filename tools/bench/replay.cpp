@@ -41,9 +41,9 @@ class SyntheticRecording {
  public:
   SyntheticRecording() {
     synthetic::Scene scene = synthetic::make_scene("ball");
-    constexpr int kFrames = 15;
+    constexpr int kImages = 15;
     constexpr double kStep = 0.01;  // m between frames
-    for (int k = 0; k < kFrames; ++k) {
+    for (int k = 0; k < kImages; ++k) {
       scene.camera.to_world.translation = {kStep * k, 0, 0};
       const std::string stem = folder_.path("frame-" + std::to_string(100 + k));
       const DepthImage depth = synthetic::render_with_kinect_noise(

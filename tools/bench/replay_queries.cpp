@@ -15,11 +15,11 @@
 #include "tools/bench/replay_parts.h"
 #include "tools/bench/replay_peers.h"
 #include "tools/bench/suite.h"
+#include "tools/bench/view.h"
 
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kNoiseSeed = 1;
 constexpr double kInside = 0.05;          // in parts of the tool's volume
 constexpr double kCoherentStep = 0.5e-3;  // m
 

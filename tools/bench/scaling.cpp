@@ -17,11 +17,10 @@
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
+#include "tools/bench/view.h"
 
 namespace vpm::bench {
 namespace {
-
-constexpr std::uint64_t kNoiseSeed = 1;
 
 constexpr double kMicro = 1e6;  // microseconds per second
 

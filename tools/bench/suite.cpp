@@ -9,7 +9,7 @@ namespace vpm::bench {
 namespace {
 
 // Options that only some suites take.
-enum Option : unsigned { kAll = 1, kMeshes = 2, kData = 4, kNoiseSeed = 16, kOccluded = 32 };
+enum Option : unsigned { kAll = 1, kMeshes = 2, kData = 4, kSeed = 16, kOccluded = 32 };
 
 // Where a suite's queries are computed.
 enum class Place { cpu, either, device };
@@ -22,7 +22,7 @@ struct Suite {
 };
 
 constexpr Suite kSuites[] = {
-    {"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kOccluded, Place::either},
+    {"accuracy", run_accuracy, kAll | kData | kSeed | kOccluded, Place::either},
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
     {"replay", run_replay, kData, Place::either},
@@ -55,7 +55,7 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
   check(given.all, kAll, "--all");
   check(!given.meshes.empty(), kMeshes, "--meshes");
   check(!given.data.empty(), kData, "--data");
-  check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
+  check(given.noise_seed != SuiteOptions::kUsualNoise, kSeed, "--noise-seed");
   check(given.shadows == Shadows::solid, kOccluded, "--shadows");
 }
 

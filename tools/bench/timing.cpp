@@ -21,6 +21,7 @@
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
+#include "tools/bench/view.h"
 
 namespace vpm::bench {
 namespace {
@@ -212,7 +213,6 @@ class Timing {
               [](const Recorded& room) -> const AnyBody& { return *room.points; });
   }
 
-  static constexpr std::uint64_t kNoiseSeed = 1;
   static constexpr int kPoses = 9;  // the middle one is 3/8 of the tool's height deep
   static constexpr std::size_t kPosesInRoom = 32;
   static constexpr std::uint64_t kMostTries = 10000;
