@@ -448,16 +448,19 @@ class Check {
     const Vec3 sides = facts().high - facts().low;
     const double size = std::max({sides.x, sides.y, sides.z});
     if (size >= kSmallest && size < (options_.scale ? kLargestOfToldScale : kLargest)) return;
-    const bool is_large = size > kSmallest;
+    const bool is_large = size > kSmallest, is_of_millimetres = mesh_.metres_per_unit == 0.001;
     const char* const cause =
-        !is_large ? ": if it was scaled to metres twice"
+        !is_large           ? ": if it was scaled to metres twice"
+        : is_of_millimetres ? " by the unit of its file: if it was scaled to millimetres twice"
         : mesh_.format == MeshFormat::gltf
             ? ", as glTF's unit is the metre: if its program wrote millimetres"
         : has_unit(mesh_.format) ? " by the unit of its file: if that should be the millimetre"
                                  : ": if its unit is the millimetre";
     char text[200];
     std::snprintf(text, sizeof text, "the mesh is %.3g m across%s, give `scale` %g", size, cause,
-                  scale_ * (is_large ? 0.001 : 1000));
+                  scale_ * (!is_large           ? 1000
+                            : is_of_millimetres ? 0.001
+                                                : 0.001 / mesh_.metres_per_unit));
     warn(text);
   }
 

@@ -31,6 +31,7 @@ struct RawMesh {
   std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`
   std::size_t dropped_polygons = 0;      // polygons of fewer than three corners
   std::vector<std::string> notes;        // how the file was taken where it could be taken otherwise
+  double metres_per_unit = 1;            // of the file's unit, where its format has one
   std::string doubt;  // defect of the file that may have opened the mesh; empty if there is none
 
   std::size_t polygon_count() const { return polygon_end.size(); }

@@ -284,6 +284,7 @@ RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat f
       placed_nodes(*scene, root_transform(*scene, format, facts.metres));
   const NodeChoice choice(named_nodes(*scene, placed), name);
   const std::vector<std::size_t> nodes = choice.choose(node);
+  mesh.metres_per_unit = facts.metres;
   if (nodes.empty()) refuse("it has no faces, only nodes", name, "export it with its mesh");
   add_nodes(*scene, placed, nodes, format, mesh);
   if (format != MeshFormat::dae)  // its root has done so
@@ -321,7 +322,8 @@ std::string scene_as_bytes(const std::function<RawMesh()>& read, const Error& no
             {"corners", mesh.corners.size()},
             {"polygons", mesh.polygon_end.size()},
             {"dropped", mesh.dropped_polygons},
-            {"notes", mesh.notes}};
+            {"notes", mesh.notes},
+            {"metres_per_unit", mesh.metres_per_unit}};
     std::string bytes = head.dump(-1, ' ', false, kReplace) + "\n";
     append(mesh.vertices, bytes);
     append(mesh.corners, bytes);
@@ -346,6 +348,7 @@ RawMesh scene_from_bytes(std::string_view bytes) {
   take(mesh.polygon_end, head["polygons"], bytes);
   mesh.dropped_polygons = head["dropped"];
   mesh.notes = head["notes"];
+  mesh.metres_per_unit = head["metres_per_unit"];
   return mesh;
 }
 

@@ -188,8 +188,7 @@ void ModelReader::begin(const XmlElement& element) {
     object_->components.push_back(component(element));
   } else if (object_ != nullptr && element.is_in({"resources", "object"})) {
     constexpr std::array kKnown{"mesh", "components", "metadatagroup", "settings"};
-    if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end())
-      object_->unread = "'" + file::shown(name) + "'";
+    if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end()) object_->ignored = name;
   } else if (object_ != nullptr && (name == "metadata" || name == "setting")) {
     setting_ = element.text_of(name == "metadata" ? "name" : "key");
   } else if (object_ != nullptr) {
@@ -204,11 +203,14 @@ void ModelReader::end(const XmlElement& element, std::string_view text) {
     const std::string key = setting_.substr(setting_.rfind(':') + 1);
     const bool is_mesh = key == "support_mesh" || key == "anti_overhang_mesh" ||
                          key == "infill_mesh" || key == "cutting_mesh";
-    if (is_mesh && file::is_word(text, "true")) object_->role = key;
+    if (is_mesh && file::is_word(text, "true")) object_->setting = key;
     setting_.clear();
   }
   if (element.name() != "object" || !element.is_in({"model", "resources"})) return;
   check_triangles();
+  const bool has_shape = !object_->triangles.empty() || !object_->components.empty();
+  if (!has_shape && !object_->ignored.empty() && object_->unread.empty())
+    object_->unread = "'" + file::shown(object_->ignored) + "'";
   object_ = nullptr;
 }
 

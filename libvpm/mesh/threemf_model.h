@@ -27,13 +27,14 @@ struct ThreemfComponent {
 
 struct ThreemfObject {
   std::string name;
-  std::string role;  // "model", "support", ... by the core specification, or Cura's word
+  std::string role;     // "model", "support", ... by the core specification
+  std::string setting;  // Cura's word for it, if it is no part of the solid; of components, too
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
   std::vector<ThreemfVolume> volumes;  // where Slic3r tells the roles of triangles
   std::vector<ThreemfComponent> components;
   std::string unread;   // names what its shape depends on beside meshes and components
-  std::string ignored;  // names what else its mesh has
+  std::string ignored;  // names what else it has beside them
 };
 
 struct ThreemfModel {

@@ -92,6 +92,7 @@ class Placement {
   std::uint64_t most_;  // bytes that the mesh may take
   ZipArchive archive_;
   SlicerSettings settings_;
+  std::string key_store_;  // XML in lower case that names the parts that are encrypted
   std::map<std::string, ThreemfModel> parts_;
   const ThreemfModel* main_ = nullptr;
   std::vector<SceneNode> nodes_{{"", 0, false}};
@@ -109,12 +110,12 @@ const ThreemfModel& Placement::part(const std::string& path_as_written) {
   const std::string path = ZipArchive::key_of(path_as_written);
   if (const auto known = parts_.find(path); known != parts_.end()) return known->second;
   const auto text = archive_.unpacked(path);
-  if (!text) {
-    const bool is_encrypted = archive_.has("Secure/keystore.xml");
-    refuse("its model part '" + file::shown(path) + "' " +
-               (!archive_.has(path) ? "is not in the file"
-                : is_encrypted      ? "is encrypted"
-                                    : "cannot be unpacked"),
+  const bool is_encrypted = key_store_.find(path) != key_store_.npos;
+  if (!text || is_encrypted) {
+    const std::string part = "its model part '" + file::shown(path_as_written) + "' ";
+    refuse(part + (!archive_.has(path) ? "is not in the file"
+                   : is_encrypted      ? "is encrypted"
+                                       : "cannot be unpacked"),
            name_, is_encrypted ? kExport : kSaveAgain);
   }
   ThreemfModel& model = parts_[path] = threemf_model(*text, name_);
@@ -123,7 +124,7 @@ const ThreemfModel& Placement::part(const std::string& path_as_written) {
       if (const auto object = model.objects.find(id); object != model.objects.end())
         object->second.volumes = volumes;
   } else if (!model.unit.empty() && model.metres != main_->metres) {
-    refuse("its model part '" + file::shown(path) + "' has another unit, " + model.unit +
+    refuse("its model part '" + file::shown(path_as_written) + "' has another unit, " + model.unit +
                ", than its main model",
            name_, kExport);
   }
@@ -138,12 +139,15 @@ bool Placement::is_solid(const ThreemfObject& object, const std::string& slicers
     const ThreemfRole role = role_of(word);
     if (role == ThreemfRole::left_out) ++left_out_[word];
     if (role != ThreemfRole::cut_away) return role == ThreemfRole::solid;
-    refuse("it has a part '" + file::shown(object.name) + "' of the type " + file::shown(word) +
+    const std::string part =
+        object.name.empty() ? "a part" : "a part '" + file::shown(object.name) + "'";
+    refuse("it has " + part + " of the type " + file::shown(word) +
                ", which would have to be cut away and is not here",
            name_, "export the plate or object as STL, which the slicer cuts");
   };
   const bool is_mesh = object.components.empty();
-  if (!check(!slicers_word.empty() ? slicers_word : is_mesh ? object.role : "")) return false;
+  const std::string& own_word = !object.setting.empty() || !is_mesh ? object.setting : object.role;
+  if (!check(slicers_word.empty() ? own_word : slicers_word)) return false;
   for (const ThreemfVolume& volume : object.volumes) check(volume.role);
   return true;
 }
@@ -222,7 +226,7 @@ void Placement::add_notes(RawMesh& mesh) const {
     if (placed.object != nullptr && !placed.object->ignored.empty())
       ignored[placed.object->ignored] = true;
   for (const auto& [element, is_there] : ignored)
-    mesh.notes.push_back("a mesh has '" + file::shown(element) + "', which is not applied");
+    mesh.notes.push_back("an object has '" + file::shown(element) + "', which is not applied");
 }
 
 RawMesh Placement::mesh(const std::string& node) {
@@ -230,6 +234,7 @@ RawMesh Placement::mesh(const std::string& node) {
   if (path.empty())
     refuse("no 3D model is in it; it is damaged, or another zip archive", name_, kSaveAgain);
   settings_ = slicer_settings(archive_, name_);
+  key_store_ = file::in_lower_case(archive_.unpacked("Secure/keystore.xml").value_or(""));
   main_ = &part(path);
   for (const ThreemfComponent& item : main_->build) {
     const auto word = settings_.parts.find({item.object, item.object});
@@ -240,6 +245,7 @@ RawMesh Placement::mesh(const std::string& node) {
   RawMesh mesh;
   mesh.name = name_;
   mesh.format = MeshFormat::threemf;
+  mesh.metres_per_unit = main_->metres;
   add_notes(mesh);
   if (chosen.empty()) {
     refuse("its build places no mesh that is solid" +

@@ -95,8 +95,21 @@ TEST(MeshCheck, WarningsOfSizeKnowTheUnitOfTheFormat) {
   EXPECT_TRUE(says_of(MeshFormat::gltf,
                       "50 m across, as glTF's unit is the metre: if its program wrote millimetres, "
                       "give `scale` 0.001"));
-  for (const MeshFormat format : {MeshFormat::dae, MeshFormat::threemf, MeshFormat::fbx})
-    EXPECT_TRUE(says_of(format, "50 m across by the unit of its file"));
+  struct Unit {
+    double metres;
+    std::string cure;
+  };
+  for (const MeshFormat format : {MeshFormat::dae, MeshFormat::threemf, MeshFormat::fbx}) {
+    const std::string told = "50 m across by the unit of its file: if ";
+    for (const auto& [metres, cure] :
+         {Unit{1, "that should be the millimetre, give `scale` 0.001"},
+          Unit{0.01, "that should be the millimetre, give `scale` 0.1"},
+          Unit{0.0254, "that should be the millimetre, give `scale` 0.0393701"},
+          Unit{0.001, "it was scaled to millimetres twice, give `scale` 0.001"}}) {
+      mesh.metres_per_unit = metres;
+      EXPECT_TRUE(says_of(format, told + cure)) << metres;
+    }
+  }
 }
 
 TEST(MeshCheck, ACavityIsLeftOut) {

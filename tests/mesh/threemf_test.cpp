@@ -286,7 +286,7 @@ TEST_F(Threemf, ObjectsOfOtherPartsOfThePackageAreRead) {
   expect_refusal(content(model(object(1, 1), "", R"(unit="inch")")),
                  "has another unit, inch, than its main model");
   expect_refusal(package(around, item(2), {}, production),
-                 "model part '3d/objects/a.model' is not in the file");
+                 "model part '/3D/Objects/a.model' is not in the file");
   expect_refusal(package(around, item(2), {{"3D/Objects/a.model", "\x01\x02"}}, production),
                  "XML of its model is damaged");
   expect_refusal(content(model(object(7, 1), "")), "it has no object 1, which is placed");
