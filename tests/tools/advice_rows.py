@@ -404,7 +404,7 @@ COMMANDS = [
     (f"{COUPLED} --coupling stiffness=500,damping=5 --batch 2", "chosen by --coupling without --frames: leave it out",
      f"{COUPLED} --coupling stiffness=500,damping=5"),
     ("mkdir -p dates; for k in 0 1 2; do cp steps/frame-00000$k.depth.png dates/2024010112000$k.png; done; "
-     f"{STEPS} --frames dates --trajectory still.txt --align-starts", 'give --frames a list of "seconds file" lines',
+     f"{STEPS} --frames dates --trajectory still.txt --align-starts", 'give a list of "seconds file" lines',
      "for k in 0 1 2; do echo $k dates/2024010112000$k.png; done > seconds.txt; "
      f"{STEPS} --frames seconds.txt --trajectory still.txt"),
     (f"{STEPS} --frames steps --trajectory still.txt --cloud wall.vpmc", "recorded frames, chosen by --frames: leave it out",
@@ -548,6 +548,38 @@ COMMANDS = [
     (f"vpm-normals wall.pgm {CAMERA} --range 0.5,1.03 -o - | vpm-query --tool small.vpmg --cloud - --pose {POSE}",
      "where nothing was measured: no volume counts there; move the camera, or fill the holes",
      f"vpm-normals wall.pgm {CAMERA} -o - | vpm-query --tool small.vpmg --cloud - --pose {POSE}", WALL),
+    # Clouds of recordings
+    (f"{STEPS} --frames plain --trajectory still.txt --depth-scale 1000",
+     r"by (vpm-normals) FRAMES (-o) CLOUDS (--depth-scale), and give (--frames) CLOUDS",
+     f"{{0}} plain {{1}} clouds {{2}} 1000 {CAMERA} --quiet && vpm-query --tool small.vpmg {{3}} clouds --trajectory still.txt"),
+    (f"{STEPS} --frames clouds --trajectory still.txt", "give (--intrinsics), .* to vpm-normals, which makes them",
+     f"rm -r clouds && vpm-normals plain -o clouds {{0}} 60,60,31.5,23.5 --quiet && "
+     "vpm-query --tool small.vpmg --frames clouds --trajectory still.txt"),
+    ("vpm-normals clouds -o other_clouds", "holds clouds already: give it to (vpm-query --frames)",
+     "{0} clouds --tool small.vpmg --trajectory still.txt"),
+    (f"vpm-normals plain {CAMERA} -o clouds", r"name another folder, or give (--force)", f"vpm-normals plain {CAMERA} -o clouds {{0}}"),
+    (f"vpm-normals plain {CAMERA} --report -", "the input is a recording: give (-o) FOLDER",
+     f"vpm-normals plain {CAMERA} {{0}} clouds_1"),
+    (f"vpm-normals plain {CAMERA} -o clouds_2 --report report.json", "are for one frame: leave them out, or name it",
+     f"vpm-normals plain {CAMERA} -o clouds_2"),
+    *[(f"vpm-normals plain {CAMERA} -o clouds_3 --camera-pose {POSE} --camera-poses camera_path.txt", "leave one of them out",
+       f"vpm-normals plain {CAMERA} -o clouds_3 --force {left}") for left in (f"--camera-pose {POSE}",
+       "--camera-poses camera_path.txt")],
+    (f"vpm-normals plain {CAMERA} -o still.txt", "name a folder for the clouds", f"vpm-normals plain {CAMERA} -o clouds_4"),
+    (f"vpm-normals plain {CAMERA} -o plain", "is the folder of the frames: name another one",
+     f"vpm-normals plain {CAMERA} -o clouds_6"),
+    (f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --camera-poses camera_path.txt", "give one frame's pose by (--camera-pose)",
+     f"vpm-normals wall.pgm {CAMERA} -o out.vpmc {{0}} {POSE}"),
+    (f"mkdir -p same/a same/b && cp wall.pgm same/a/1.pgm && cp wall.pgm same/b/1.pgm && "
+     f"printf '%s\\n' '0 a/1.pgm' '1 b/1.pgm' > same/list.txt && vpm-normals same/list.txt {CAMERA} -o clouds_5/",
+     "give each of them a name of its own",
+     f"mv same/b/1.pgm same/b/2.pgm && printf '%s\\n' '0 a/1.pgm' '1 b/2.pgm' > same/list.txt && "
+     f"vpm-normals same/list.txt {CAMERA} -o clouds_5/"),
+    # Requests
+    (f"{TOOL} --tool small.vpmg --serve", "give one --tool", f"{TOOL} --serve"),
+    (f"{TOOL} --serve -o out.csv", r"let the name of (--output) end in (\.jsonl)", f"{TOOL} --serve {{0}} out{{1}}"),
+    ("vpm-query --tool small.vpmg --cloud - --serve", "name files for --tool and --cloud", f"{TOOL} --serve"),
+    (f"{TOOL} --serve --poses poses.txt", "requests, chosen by --serve: leave it out", f"{TOOL} --serve"),
     # Recordings
     (f"{STEPS} --frames tum --trajectory still.txt", r"(--align-starts) lets both begin together",
      f"{STEPS} --frames tum --trajectory still.txt {{0}}"),

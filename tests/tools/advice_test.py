@@ -38,7 +38,9 @@ UNTRIED = [
         "Measure accuracy and speed; write JSON and CSV", "--meshes MESHES", "--data DATA",
         "depend on the machine's speed. Wins over --max-error and --for-scene",
         "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames",
-        "vpm-normals --intrinsics", "vpm-pack --weld", "vpm-pack --repair", "vpm-pack --max-hole",
+        *(f"vpm-normals --{option}" for option in ("along-ray", "axes", "camera-pose", "channel", "decode", "depth-scale", "flip",
+                                                   "intrinsics", "invalid", "range", "unit")),
+        "clouds, for vpm-query --frames", "vpm-pack --weld", "vpm-pack --repair", "vpm-pack --max-hole",
     ]),
     ("tells which tool reads a format; a tool that does not says what it wants instead", [
         "give it to vpm-pack", "give it to vpm-normals",
@@ -51,9 +53,15 @@ UNTRIED = [
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
         "make it with rotation_from_matrix or rotation_from_quaternion", "make their queries with the same options",
         "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh", "use the one that it was moved to",
+        "leave `deadline_seconds` out, or ask pose by pose",
         "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
     ]),
+    ("an answer of vpm-query --serve: cases/serve.t", [
+        'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',
+        'write {"pose": [tx,ty,tz,qx,qy,qz,qw]} or {"cloud": "scene.vpmc"}, with an "id" if wanted',
+    ]),
     ("said by a build without a library, or with CUDA", [
+        "give the .vpmg that vpm-pack and vpm-graph make of it",
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",
         "build it where libtiff is installed, or convert the image to a 16-bit PNG", "save it as OBJ, OFF, PLY or STL",
         "--view: this build draws no pages, because three.js was not found; install it (Debian: libjs-three) and build again",

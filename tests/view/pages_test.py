@@ -251,8 +251,9 @@ class Query(PageTest):
         for k, z in enumerate((5000, 5200, 5400)):
             write_depth(f"frames/frame-{k:06}.depth.png", numpy.full((480, 640), z))
         (FOLDER / "path.txt").write_text("".join(f"{k / 30} 0 0 1 0 0 0 1\n" for k in range(4)))
-        run("vpm-query", "--tool", "tool.vpmg", "--frames", "frames", "--trajectory", "path.txt", "--rate", 90,
-            *INTRINSICS, "--quiet", "-o", "frames.jsonl", "--view", "frames.html")
+        run("vpm-normals", "frames", *INTRINSICS, "--quiet", "-o", "clouds")
+        run("vpm-query", "--tool", "tool.vpmg", "--frames", "clouds", "--trajectory", "path.txt", "--rate", 90,
+            "--quiet", "-o", "frames.jsonl", "--view", "frames.html")
         page, lines = self.open("frames.html"), results("frames.jsonl")
         self.assertEqual(page.report()["steps"], len(lines))
         for step in (0, len(lines) - 1):
@@ -295,8 +296,7 @@ class Query(PageTest):
         steps = [(k / 30, camera[:3, :3] @ (0, 0, 1.2 + 0.1 * k) + camera[:3, 3]) for k in range(5)]
         (FOLDER / "kitchen.txt").write_text("".join(f"{t} {x} {y} {z} 0 0 0 1\n" for t, (x, y, z) in steps))
         run("vpm-query", "--tool", "tool.vpmg", "--frames", recording, "--trajectory", "kitchen.txt", "--rate", 100,
-            "--intrinsics", "585,585,320,240", "--depth-scale", 1000, "--quiet", "-o", "kitchen.jsonl", "--view",
-            "kitchen.html")
+            "--intrinsics", "585,585,320,240", "--quiet", "-o", "kitchen.jsonl", "--view", "kitchen.html")
         page, lines = self.open("kitchen.html"), results("kitchen.jsonl")
         self.assertEqual(page.report()["steps"], len(lines))
         page.evaluate(f"vpm.setStep({len(lines) - 1})")

@@ -8,11 +8,12 @@ namespace vpm::tools {
 namespace {
 
 // What to write for names of the API for which the running program has no option of the same name.
-constexpr std::array<std::pair<const char*, const char*>, 21> kWords = {{
+constexpr std::array<std::pair<const char*, const char*>, 22> kWords = {{
     {"repair_voxels", "--repair voxel=N"},
     {"pack", "vpm-pack"},
     {"build_tool", "vpm-graph"},
     {"import_cloud", "vpm-normals"},
+    {"frames", "the folder"},
     {"calibrate", "vpm-graph --calibrate"},
     {"levels", "vpm-graph --levels"},
     {"intrinsics", "vpm-normals --intrinsics"},

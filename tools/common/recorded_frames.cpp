@@ -31,7 +31,7 @@ void warn_of_improbable_times(const Program& program, const Recording& recording
   std::snprintf(apart, sizeof apart, "%.2g", interval);
   program.warn("the frames are " + std::string(apart) + " s apart, as their names or their list " +
                (recording.has_clock ? "tell their times" : "number them") +
-               ", which is unusual; if that is wrong, give `frames` a list of \"seconds file\" "
+               ", which is unusual; if that is wrong, give a list of \"seconds file\" "
                "lines");
 }
 

@@ -20,11 +20,15 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostWarnings = 5;
 
 void check(const Arguments& a) {
-  if (a.output.empty()) refuse_usage("the input is a recording: give -o FOLDER for its clouds");
+  if (a.output.empty() || a.output == "-")
+    refuse_usage("the input is a recording: give -o FOLDER for its clouds");
   if (!a.report.empty() || !a.export_path.empty() || !a.view.empty())
     refuse_usage("--report, --export and --view are for one frame: leave them out, or name it");
   if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
     refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
+  std::error_code fault;
+  if (fs::equivalent(a.depth, a.output, fault))
+    refuse_usage("--output " + a.output + " is the folder of the frames: name another one");
 }
 
 // Makes the folder. Throws Error(invalid_argument) if files are in it already.

@@ -99,6 +99,9 @@ $ vpm-query --tool cube.vpmg --frames clouds --trajectory still.txt --quiet -o /
 $ vpm-normals steps -o clouds --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: --output clouds has files in it already; name another folder, or give --force
 [2]
+$ vpm-normals tum -o tum/. --intrinsics 60,60,31.5,23.5 --force
+2> vpm-normals: error: --output tum/. is the folder of the frames: name another one
+[2]
 $ vpm-normals steps --report - --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: the input is a recording: give -o FOLDER for its clouds
 [2]
@@ -140,7 +143,7 @@ $ vpm-query --tool cube.vpmg --frames gone --trajectory still.txt
 
 # Times that hardly are those of a camera are doubted.
 $ mkdir dates && for k in 0 1 2; do cp steps/frame-00000$k.depth.png dates/2024010112000$k.png; done && vpm-query --tool cube.vpmg --frames dates --trajectory still.txt --align-starts --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
-2> vpm-query: warning: the frames are 0.001 s apart, as their names or their list tell their times, which is unusual; if that is wrong, give --frames a list of "seconds file" lines
+2> vpm-query: warning: the frames are 0.001 s apart, as their names or their list tell their times, which is unusual; if that is wrong, give a list of "seconds file" lines
 
 # A time without poses, across which they are interpolated, is said: of the tool, and of the camera where frames lie in it.
 $ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' '0.02 0 0 0.95 0 0 0 1' '1 0 0 0.95 0 0 0 1' > gap.txt && vpm-query --tool cube.vpmg --frames steps --trajectory gap.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
