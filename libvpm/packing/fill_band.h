@@ -11,7 +11,7 @@ namespace vpm {
 inline constexpr std::size_t kFirstSpheres = 200;
 
 // Places spheres of at least `radius`, cut to `cap`, until none fits or there are `most`; larger
-// ones first where they compete for room. `space` must be focused on the radius.
+// ones first where they compete for room. Radii must not grow from call to call.
 void fill_band(Space& space, double radius, double cap, std::size_t most);
 
 }  // namespace vpm

@@ -134,7 +134,6 @@ class Growth {
     for (double radius = std::min<double>(space.bound(), most_);
          space.spheres().size() < most && radius > least;) {
       radius = std::max(least, kBand * std::min<double>(radius, space.bound()));
-      space.focus(radius);
       fill_band(space, radius, most_, most);
     }
     std::vector<Sphere> found(space.spheres().begin() + static_cast<std::ptrdiff_t>(count),

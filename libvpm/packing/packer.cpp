@@ -19,6 +19,9 @@ namespace {
 // packings, so their bands are narrow and each is placed into contact; later ones only need roughly
 // the right order.
 constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
+// A part of the room that was not searched is worth telling if it may hold spheres larger than the
+// smallest delivered by this factor.
+constexpr double kMuchLarger = 1.01;
 // Bands are completed, so that fewer spheres are a prefix of more, unless a band brings more than
 // this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
@@ -67,7 +70,6 @@ class Packer {
     while (!enough() && radius > smallest_) {
       const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
       radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
-      space_.focus(radius);
       const std::size_t before = space_.spheres().size();
       fill_band(space_, radius, cap_, most_);
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
@@ -99,7 +101,6 @@ class Packer {
       if (const Sphere m = frame_.to_solid(s); m.radius > 0) all.push_back(m);
     std::sort(all.begin(), all.end(), largest_first);
     PackResult result;
-    result.partly_searched = space_.left_out();
     result.stop = stop_;
     double filled = 0;
     std::optional<InertiaError> inertia = no_inertia_;
@@ -118,6 +119,9 @@ class Packer {
       }
       break;
     }
+    const double least =
+        result.spheres.empty() ? smallest_ : result.spheres.back().radius / frame_.scale;
+    result.partly_searched = space_.left_out() > kMuchLarger * least;
     result.coverage = filled / volume_;
     if (!all.empty()) {
       const auto count = static_cast<double>(result.spheres.size());

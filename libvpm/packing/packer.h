@@ -38,8 +38,8 @@ struct PackResult {
   std::vector<Sphere> spheres;  // largest first, then by centre
   double coverage = 0;          // volume of the spheres / volume of the solid
   StopReason stop = StopReason::spheres;
-  // True if the solid is so thin that only a part of its room, spread over it, was searched; larger
-  // spheres may fit elsewhere.
+  // True if there is so much narrow room that only a part of it, spread over the solid, was
+  // searched, and spheres more than 1 % larger than the smallest delivered may fit elsewhere.
   bool partly_searched = false;
   // Upper bound of the coverage of any packing of as many spheres: that many of the largest ball,
   // at most 1.

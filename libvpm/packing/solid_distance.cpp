@@ -94,6 +94,13 @@ std::optional<bool> SolidDistance::inside_of_face(std::uint32_t nearest, Vec3 x)
   return height < 0;
 }
 
+bool SolidDistance::is_inside_near(Vec3 x) const {
+  const SurfacePoint nearest = boundary_->closest(x);
+  const std::optional<bool> told =
+      nearest.triangle == SurfacePoint::kNone ? std::nullopt : inside_of_face(nearest.triangle, x);
+  return told ? *told : inside(x);
+}
+
 bool SolidDistance::holds_disk(std::uint32_t triangle, Vec3 point, double radius) const {
   const auto [a, b, c] = triangles_[triangle];
   const auto beyond = [&](std::uint32_t from, std::uint32_t to) {

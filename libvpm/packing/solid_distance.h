@@ -50,6 +50,8 @@ class SolidDistance {
     return boundary_->corners()[found];
   }
   bool inside(Vec3 x) const { return winding_.inside(x); }
+  // Returns inside(x) for a point near the mesh, mostly from the nearest triangle.
+  bool is_inside_near(Vec3 x) const;
   // Returns inside(x) from the triangle nearest to x, at almost no cost. Empty if x is nearest to
   // an edge or too near to decide.
   std::optional<bool> inside_of_face(std::uint32_t nearest, Vec3 x) const;

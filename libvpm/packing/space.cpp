@@ -21,6 +21,7 @@ constexpr double kBlockWidth = 4;
 // Distance, in widths of a block, up to which it lists spheres. The sought radius is at most half
 // the width; the rest is for maxima that a search of a larger radius missed.
 constexpr double kListDistance = 0.6;
+constexpr double kRootListDistance = 2;  // above the cube's diagonal
 // Cells with a half diagonal below this part of the radius are searched instead of cut.
 constexpr float kLeaf = 0.25f;
 // A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
@@ -31,18 +32,11 @@ constexpr float kNearFace = 0.5f;
 // A sphere counts as nearest to a point if no triangle is nearer than its distance plus these
 // relative and absolute margins: a triangle that it touches may lie between.
 constexpr double kBehind = 1e-3, kTouching = 1e-9;
-constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
-
-// Returns 2^-level from its bits; std::ldexp would be a call for every cell.
-double edge(int level) {
-  constexpr int kBias = 1023, kFraction = 52;
-  return std::bit_cast<double>(static_cast<std::uint64_t>(kBias - level) << kFraction);
-}
 
 // Returns half the diagonal of a cell, rounded up.
 float half_diagonal(int level) {
-  return static_cast<float>(0.866025404 * edge(level));
+  return static_cast<float>(0.866025404 * edge_of_level(level));
 }
 
 float round_down(double v) {
@@ -51,18 +45,6 @@ float round_down(double v) {
 
 float round_up(double v) {
   return std::nextafter(static_cast<float>(v), HUGE_VALF);
-}
-
-BlockIndex::Coordinates cube_of(Vec3 x, int level) {
-  const double scale = edge(-level);
-  const auto index = [&](double v) {
-    return static_cast<std::uint32_t>(std::clamp(v * scale, 0.0, scale - 1));
-  };
-  return {index(x.x), index(x.y), index(x.z)};
-}
-
-Vec3 cube_center(BlockIndex::Coordinates c, int level) {
-  return edge(level) * Vec3{c.x + 0.5, c.y + 0.5, c.z + 0.5};
 }
 
 // Returns the sphere of radius `cap` that touches the nearest obstacle of x.
@@ -77,26 +59,67 @@ Space::Space(const SolidDistance& solid, double smallest, std::size_t most_block
   Cell root{};
   root.x = root.y = root.z = 0.5f;
   root.triangle = SurfacePoint::kNone;
-  estimate(root, {});
+  blocks_.push_back({kRootListDistance, {}, 0, {}, {}});
+  estimate(root, blocks_[0]);
   measure(root);
-  blocks_.push_back({{}, 0, {root}, {}});
+  blocks_[0].cells = {root};
   bounds_ = {root.bound};
-  index_.assign({{0, 0, 0}});
 }
 
 float Space::bound() const {
   return bounds_.empty() ? 0 : *std::max_element(bounds_.begin(), bounds_.end());
 }
 
-void Space::focus(double radius) {
-  while (edge(level_) > kBlockWidth * radius && level_ < kMaxBlockLevel) split_blocks();
+std::vector<std::uint32_t> Space::focus(double radius, std::size_t most) {
+  focus_ = radius;
+  leave_out();
+  for (;;) {
+    std::vector<std::uint32_t> blocks = promising(radius);
+    update(blocks);  // with the spheres placed while they rested
+    const auto drop_hopeless = [&] {
+      std::erase_if(blocks, [&](std::uint32_t b) { return !is_promising(b, radius); });
+    };
+    drop_hopeless();
+    if (blocks.empty()) return blocks;
+    for (;;) {
+      keep_most_room(blocks, most);
+      const auto wide =
+          std::partition(blocks.begin(), blocks.end(), [&](std::uint32_t b) { return is_cut(b); });
+      if (wide == blocks.end()) break;
+      const std::vector<std::uint32_t> parts = split_blocks({wide, blocks.end()});
+      blocks.erase(wide, blocks.end());
+      blocks.insert(blocks.end(), parts.begin(), parts.end());
+      drop_hopeless();
+    }
+    std::sort(blocks.begin(), blocks.end());
+    if (!blocks.empty()) return blocks;
+  }
 }
 
+// Returns the blocks, ascending, that may still hold a sphere of this radius.
 std::vector<std::uint32_t> Space::promising(double radius) const {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t b = 0; b < bounds_.size(); ++b)
     if (is_promising(b, radius)) blocks.push_back(b);
   return blocks;
+}
+
+// Returns true if the block is small enough for searches.
+bool Space::is_cut(std::uint32_t block) const {
+  const int level = tree_[block].level;
+  return edge_of_level(level) <= kBlockWidth * focus_ || level == BlockTree::kMaxLevel;
+}
+
+// Keeps at most so many blocks.
+void Space::keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most) const {
+  if (blocks.size() <= most) return;
+  const auto rank = [&](std::uint32_t b) {
+    return std::tuple(-bounds_[b], tree_[b].scattered(), b);
+  };
+  const auto cut = blocks.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(blocks.begin(), cut, blocks.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
+  blocks.erase(cut, blocks.end());
 }
 
 // Returns the surface point nearest to the cell's centre, if nearer than `within`. Starts from the
@@ -113,16 +136,16 @@ SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
 }
 
 // Sets d and bound from the spheres and from the triangle nearest to a parent. Needs cell.mesh.
-void Space::estimate(Cell& cell, const std::vector<std::uint32_t>& near) const {
+void Space::estimate(Cell& cell, const Block& block) const {
   const Vec3 x = cell.center();
-  double d = list_distance_, bound = d + half_diagonal(cell.level);
+  double d = block.list_distance, bound = d + half_diagonal(cell.level);
   const auto take = [&](const Sphere& s) {
     const double beside = norm(x - s.center) - s.radius;
     if (beside >= d) return;
     d = beside;
     bound = farthest(cell, s);
   };
-  for (const std::uint32_t i : near) take(spheres_[i]);
+  for (const std::uint32_t i : block.spheres) take(spheres_[i]);
   cell.measured = d <= cell.mesh;
   if (!cell.measured && cell.triangle != SurfacePoint::kNone)
     take({solid_.closest_on(cell.triangle, x), 0});
@@ -147,13 +170,28 @@ void Space::measure(Cell& cell) const {
   settle(cell, same ? cell.parent : cell.side);
 }
 
-// Bounds a cell before it is cut: a cell much larger than the part is thin needs no cutting until
-// spheres of that size are sought.
-void Space::bound_thin_part(Cell& cell) const {
-  if (cell.thick || cell.mesh > kNearFace * half_diagonal(cell.level)) return;
-  const ThinPart part = thin_part(solid_, cell.center(), edge(cell.level + 1));
-  cell.thick = !part.faces_meet;
-  cell.bound = std::min(cell.bound, round_up(part.bound));
+// Bounds a cell before it is cut: a cell much larger than the part or gap is thin needs no cutting
+// until spheres of that size are sought.
+void Space::bound_narrow_part(Cell& cell, const Block& block) const {
+  const float half = half_diagonal(cell.level);
+  if (cell.mesh > kNearFace * half) return;
+  const Vec3 x = cell.center();
+  const double half_edge = edge_of_level(cell.level + 1);
+  if (!cell.thick) {
+    const ThinPart part = thin_part(solid_, x, half_edge);
+    cell.thick = !part.faces_meet;
+    cell.bound = std::min(cell.bound, round_up(part.bound));
+  }
+  const Sphere* nearest = nullptr;
+  double beside = half;
+  for (const std::uint32_t i : block.spheres) {
+    const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
+    if (d < beside) beside = d, nearest = &spheres_[i];
+  }
+  if (nearest != nullptr) {
+    const double bound = gap_bound(solid_, *nearest, x, half_edge, cell.bound);
+    cell.bound = std::min(cell.bound, round_up(bound));
+  }
 }
 
 // Bounds the clearance over a cell by all nearby obstacles together. Distances are convex with
@@ -180,26 +218,26 @@ double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
     cell.mesh = std::max(cell.mesh, round_down(std::min(p.distance, horizon)));
   }
   if (bounds.empty()) return HUGE_VAL;
-  return max_min_step(bounds, edge(cell.level + 1)).value;
+  return max_min_step(bounds, edge_of_level(cell.level + 1)).value;
 }
 
 // Returns the largest distance of a point of the cell from a sphere; it is at some corner.
 double Space::farthest(const Cell& cell, const Sphere& from) {
-  const double h = edge(cell.level + 1);
+  const double h = edge_of_level(cell.level + 1);
   const Vec3 d = cell.center() - from.center;
   return norm({std::abs(d.x) + h, std::abs(d.y) + h, std::abs(d.z) + h}) - from.radius;
 }
 
 // Returns the side of a measured cell's centre. The nearest obstacle mostly decides: a face has the
 // inside behind it, and a sphere lies inside. Winding numbers take far longer.
-Space::Side Space::side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+Space::Side Space::side_of(const Cell& cell, const Block& block) const {
   const Vec3 x = cell.center();
   std::uint32_t nearest = cell.exact ? cell.triangle : SurfacePoint::kNone;
   if (!cell.exact) {
-    double beside = list_distance_;
-    for (const std::uint32_t i : near)
+    double beside = block.list_distance;
+    for (const std::uint32_t i : block.spheres)
       beside = std::min(beside, norm(x - spheres_[i].center) - spheres_[i].radius);
-    if (beside < list_distance_) {
+    if (beside < block.list_distance) {
       nearest = solid_.closest(x, std::max(beside, 0.0) * (1 + kBehind) + kTouching).triangle;
       if (nearest == SurfacePoint::kNone) return Side::inside;
     }
@@ -216,10 +254,9 @@ void Space::settle(Cell& cell, Side side) {
     cell.bound = std::min(cell.bound, half_diagonal(cell.level) - cell.mesh);
 }
 
-void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
-                  std::vector<Cell>& parts) const {
+void Space::split(const Cell& cell, const Block& block, std::vector<Cell>& parts) const {
   const auto level = static_cast<std::uint8_t>(cell.level + 1);
-  const auto offset = static_cast<float>(edge(level + 1));
+  const auto offset = static_cast<float>(edge_of_level(level + 1));
   // Half a part's diagonal, which is the distance of its centre from the cell's.
   const float half = half_diagonal(level);
   for (int octant = 0; octant < 8; ++octant) {
@@ -232,34 +269,37 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
     part.parent = cell.side;
     part.triangle = cell.triangle;
     part.thick = cell.thick;
-    estimate(part, near);
+    estimate(part, block);
     part.bound = std::min(part.bound, cell.bound);
     if (cell.mesh > half) settle(part, cell.side);  // both centres lie in a ball without triangles
     if (part.bound > smallest_) parts.push_back(part);
   }
 }
 
-void Space::split_cells(Block& block, std::vector<Cell>& cells) const {
+void Space::split_cells(Block& block, int level, std::vector<Cell>& cells) const {
   for (Cell& cell : block.cells) {
-    if (cell.level != level_) {
+    if (cell.level != level) {
       cells.push_back(cell);
       continue;
     }
     if (!cell.measured) measure(cell);  // estimates from estimates would exclude nothing
     if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
-      settle(cell, side_of(cell, block.spheres));
-    bound_thin_part(cell);
-    if (cell.bound > smallest_) split(cell, block.spheres, cells);
+      settle(cell, side_of(cell, block));
+    bound_narrow_part(cell, block);
+    if (cell.bound > smallest_) split(cell, block, cells);
   }
 }
 
-std::array<Space::Block, 8> Space::split_block(std::uint32_t number, double list_distance) {
+// Returns the eighths of a block, empty ones without cells, and takes its contents.
+std::array<Space::Block, 8> Space::split_block(std::uint32_t number) {
   Block& block = blocks_[number];
-  const Vec3 center = cube_center(index_[number], level_);
-  const double near = list_distance + half_diagonal(level_ + 1), offset = edge(level_ + 2);
-  std::array<Block, 8> parts;
+  const BlockTree::Cube cube = tree_[number];
+  const Vec3 center = cube.center();
+  const double list_distance = kListDistance * edge_of_level(cube.level + 1);
+  const double near = list_distance + half_diagonal(cube.level + 1);
+  std::array<Block, 8> parts{};
   std::vector<Cell> cells;
-  split_cells(block, cells);
+  split_cells(block, cube.level, cells);
   for (const Cell& cell : cells) {
     parts[(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
           (cell.z > center.z ? 4u : 0u)]
@@ -268,73 +308,85 @@ std::array<Space::Block, 8> Space::split_block(std::uint32_t number, double list
   for (unsigned octant = 0; octant < 8; ++octant) {
     Block& part = parts[octant];
     if (part.cells.empty()) continue;
+    part.list_distance = list_distance;
     part.cells.shrink_to_fit();
-    const Vec3 at = center + Vec3{octant & 1 ? offset : -offset, octant & 2 ? offset : -offset,
-                                  octant & 4 ? offset : -offset};
+    const Vec3 at = cube.part(octant).center();
     for (const std::uint32_t i : block.spheres)
       if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
     part.spheres.shrink_to_fit();
     part.taken = part.spheres.size();
   }
-  block = {};
+  block.cells.clear();
+  block.maxima.clear();
   return parts;
 }
 
-void Space::split_blocks() {
-  const double list_distance = kListDistance * edge(level_ + 1);
-  std::vector<std::array<Block, 8>> parts(blocks_.size());
-  parallel_for(blocks_.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      parts[b] = split_block(static_cast<std::uint32_t>(b), list_distance);
+// Cuts blocks into eighths and returns these. Blocks without any room stay whole, without cells.
+std::vector<std::uint32_t> Space::split_blocks(const std::vector<std::uint32_t>& wide) {
+  std::vector<std::array<Block, 8>> parts(wide.size());
+  parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) parts[i] = split_block(wide[i]);
   });
-
-  std::vector<BlockIndex::Coordinates> coordinates;
-  std::vector<Block> blocks;
-  for (std::uint32_t b = 0; b < parts.size(); ++b) {
-    const BlockIndex::Coordinates c = index_[b];
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      if (parts[b][octant].cells.empty()) continue;
-      coordinates.push_back(
-          {2 * c.x + (octant & 1), 2 * c.y + ((octant >> 1) & 1), 2 * c.z + (octant >> 2)});
-      blocks.push_back(std::move(parts[b][octant]));
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t i = 0; i < wide.size(); ++i) {
+    bounds_[wide[i]] = 0;
+    unsigned kept = 0;
+    for (unsigned octant = 0; octant < 8; ++octant)
+      kept |= parts[i][octant].cells.empty() ? 0 : 1u << octant;
+    if (kept == 0) continue;
+    std::uint32_t appended = tree_.size();
+    tree_.cut(wide[i], kept);
+    blocks_.resize(tree_.size());
+    bounds_.resize(tree_.size());
+    bool first = true;
+    for (Block& part : parts[i]) {
+      if (part.cells.empty()) continue;
+      const std::uint32_t b = first ? wide[i] : appended++;
+      blocks_[b] = std::move(part);
+      bounds_[b] = block_bound(blocks_[b]);
+      numbers.push_back(b);
+      first = false;
     }
   }
-  blocks_ = std::move(blocks);
-  bounds_.resize(blocks_.size());
-  for (std::size_t b = 0; b < blocks_.size(); ++b) bounds_[b] = block_bound(blocks_[b]);
-  leave_out(coordinates);
-  index_.assign(std::move(coordinates));
-  ++level_;
-  list_distance_ = list_distance;
+  return numbers;
 }
 
-// Drops blocks of thin plates, which have more than memory holds, all with equal room. Those that
-// stay are spread over the plate.
-void Space::leave_out(std::vector<BlockIndex::Coordinates>& coordinates) {
-  if (blocks_.size() <= most_blocks_) return;
-  std::vector<std::uint32_t> order(blocks_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  // Bounds are loose until a block is searched: differences below a factor of two tell nothing.
-  const float most_room = *std::max_element(bounds_.begin(), bounds_.end());
-  const auto rank = [&](std::uint32_t b) {
-    return std::tuple(2 * bounds_[b] < most_room, BlockIndex::scatter(coordinates[b].key()), b);
-  };
-  const auto cut = order.begin() + static_cast<std::ptrdiff_t>(most_blocks_);
-  std::nth_element(order.begin(), cut, order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
-  left_out_ = true;
-  order.erase(cut, order.end());
-  std::sort(order.begin(), order.end());
-  for (std::uint32_t to = 0; to < order.size(); ++to) {
-    const std::uint32_t from = order[to];
+// Drops blocks without room, then those of thin plates, which have more than memory holds, all with
+// equal room. Those that stay are spread over the plate. Waits until there are a quarter too many,
+// since each time costs a look at all.
+void Space::leave_out() {
+  if (blocks_.size() <= most_blocks_ + most_blocks_ / 4) return;
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t b = 0; b < blocks_.size(); ++b)
+    if (!blocks_[b].cells.empty()) order.push_back(b);
+  if (order.size() > most_blocks_) {
+    // Bounds are loose until a block is searched: differences below a factor of two tell nothing.
+    const float most_room = bound();
+    const auto rank = [&](std::uint32_t b) {
+      return std::tuple(2 * bounds_[b] < most_room, tree_[b].scattered(), b);
+    };
+    const auto cut = order.begin() + static_cast<std::ptrdiff_t>(most_blocks_);
+    std::nth_element(order.begin(), cut, order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
+    std::for_each(cut, order.end(),
+                  [&](std::uint32_t b) { left_out_ = std::max(left_out_, bounds_[b]); });
+    order.erase(cut, order.end());
+    std::sort(order.begin(), order.end());
+  }
+  keep(order);
+}
+
+// Keeps only these blocks, ascending, and numbers them anew.
+void Space::keep(const std::vector<std::uint32_t>& blocks) {
+  for (std::uint32_t to = 0; to < blocks.size(); ++to) {
+    const std::uint32_t from = blocks[to];
     if (from == to) continue;
     blocks_[to] = std::move(blocks_[from]);
     bounds_[to] = bounds_[from];
-    coordinates[to] = coordinates[from];
   }
-  blocks_.resize(order.size());
-  bounds_.resize(order.size());
-  coordinates.resize(order.size());
+  blocks_.resize(blocks.size());
+  bounds_.resize(blocks.size());
+  tree_.keep(blocks);
 }
 
 float Space::block_bound(const Block& block) {
@@ -358,7 +410,7 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
       if (cell.bound > smallest_) rest.push_back(cell);
       continue;
     }
-    if (cell.side == Side::unknown) settle(cell, side_of(cell, block.spheres));
+    if (cell.side == Side::unknown) settle(cell, side_of(cell, block));
     if (cell.side == Side::inside && cell.d > 0 && cell.d < radius)
       cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres, bounds)));
     if (cell.bound < radius) {
@@ -369,9 +421,9 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
       leaves.push_back(cell);
       continue;
     }
-    bound_thin_part(cell);
+    bound_narrow_part(cell, block);
     if (cell.bound >= radius) {
-      split(cell, block.spheres, pending);
+      split(cell, block, pending);
     } else if (cell.bound > smallest_) {
       rest.push_back(cell);
     }
@@ -424,9 +476,9 @@ double Space::local_maximum(Block& block, const Cell& leaf, double radius, doubl
 }
 
 SeparationBound Space::separation(Vec3 x, double within) const {
-  const std::uint32_t b = index_.find(cube_of(x, level_));
-  if (b == BlockIndex::kNone) return {-1, {}, {}};
-  SeparationBound best{std::min(within, list_distance_), {}, {}};
+  const std::uint32_t b = tree_.find(x);
+  if (b == BlockTree::kNone) return {-1, {}, {}};
+  SeparationBound best{std::min(within, blocks_[b].list_distance), {}, {}};
   for (const std::uint32_t i : blocks_[b].spheres) {
     const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
     if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};
@@ -444,28 +496,23 @@ SeparationBound Space::separation(Vec3 x, double within) const {
 void Space::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
   const auto number = static_cast<std::uint32_t>(spheres_.size());
   spheres_.push_back(sphere);
-  const double around = sphere.radius + list_distance_;
-  const BlockIndex::Coordinates low = cube_of(sphere.center - Vec3{around, around, around}, level_);
-  const BlockIndex::Coordinates high =
-      cube_of(sphere.center + Vec3{around, around, around}, level_);
-  const double near = around + half_diagonal(level_);
-  for (std::uint32_t z = low.z; z <= high.z; ++z) {
-    for (std::uint32_t y = low.y; y <= high.y; ++y) {
-      for (std::uint32_t x = low.x; x <= high.x; ++x) {
-        if (!(norm(cube_center({x, y, z}, level_) - sphere.center) < near)) continue;
-        const std::uint32_t b = index_.find({x, y, z});
-        if (b == BlockIndex::kNone) continue;
-        blocks_[b].spheres.push_back(number);
-        touched.push_back(b);
-      }
-    }
-  }
+  const auto reaches = [&](const BlockTree::Cube& cube) {
+    const double list_distance =
+        cube.level == 0 ? kRootListDistance : kListDistance * edge_of_level(cube.level);
+    const double near = sphere.radius + list_distance + half_diagonal(cube.level);
+    return norm(cube.center() - sphere.center) < near;
+  };
+  tree_.visit(reaches, [&](std::uint32_t b) {
+    blocks_[b].spheres.push_back(number);
+    if (is_promising(b, focus_) && is_cut(b)) touched.push_back(b);
+  });
 }
 
 void Space::update(const std::vector<std::uint32_t>& blocks) {
   parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Block& block = blocks_[blocks[i]];
+      if (block.taken == block.spheres.size()) continue;
       for (; block.taken < block.spheres.size(); ++block.taken)
         take_from(block, spheres_[block.spheres[block.taken]]);
       bounds_[blocks[i]] = block_bound(block);

@@ -6,17 +6,20 @@
 // radius rest; others are cut until their size is a fraction of that radius. No resolution is fixed
 // beforehand, so thin parts cost cells only where they are.
 //
-// Blocks are the cubes of one octree level, 2 to 4 times as wide as the sought radius. Each lists
-// all spheres within list_distance_, so that a clearance costs one lookup.
+// Blocks are the leaves of a coarser octree. Those that may hold a sphere of the sought radius are
+// 2 to 4 times as wide as it; others rest as they are, whatever their width: the shell between a
+// sphere and the faces around it would be billions of blocks. Each lists all spheres within its
+// list distance, so that a clearance costs one lookup.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
 #include "libvpm/model/sphere.h"
-#include "libvpm/packing/block_index.h"
+#include "libvpm/packing/block_tree.h"
 #include "libvpm/packing/linear_programme.h"
 #include "libvpm/packing/solid_distance.h"
 
@@ -50,16 +53,14 @@ class Space {
   // and where local searches missed a maximum.
   float bound() const;
 
-  bool left_out() const { return left_out_; }  // true if blocks were left out
+  // Returns an upper bound on the radius of spheres that fit in blocks left out; 0 if none were.
+  float left_out() const { return left_out_; }
 
-  // Prepares for searches of at least `radius`: cuts blocks to its size. Radii must not grow from
-  // call to call.
-  void focus(double radius);
-
-  float bound(std::uint32_t block) const { return bounds_[block]; }
-
-  // Returns the blocks, ascending, that may still hold a sphere of this radius.
-  std::vector<std::uint32_t> promising(double radius) const;
+  // Prepares for searches of at least `radius`: returns blocks, ascending, that may still hold such
+  // a sphere, and cuts them to its size. None are left if it returns none. Of more than `most` it
+  // takes those with the most room, of equal ones some spread over the solid: a plate has millions.
+  // Radii must not grow from call to call.
+  std::vector<std::uint32_t> focus(double radius, std::size_t most);
   bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
 
   // Appends local maxima of the clearance above the block with at least `radius`, cut to `cap`;
@@ -68,11 +69,12 @@ class Space {
   void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
 
   // Returns the clearance of a point in the solid if it is below `within`. Otherwise kind is none
-  // and the value is min(within, list_distance_). The value is negative if the point has no room.
+  // and the value is at most `within`, less where the block lists no farther spheres. The value is
+  // negative if the point has no room.
   SeparationBound separation(Vec3 x, double within = 2) const;
 
-  // Places a sphere and appends the blocks around it to `touched`. Clearances know it at once,
-  // bounds and searches after update() of these blocks.
+  // Places a sphere and appends the blocks around it that may be searched to `touched`. Clearances
+  // know it at once, bounds and searches after update() of these; others take it in focus().
   void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
   void update(const std::vector<std::uint32_t>& blocks);  // needs distinct blocks
 
@@ -94,7 +96,7 @@ class Space {
     std::uint8_t level;  // edge length 2^-level
     Side side;           // side of the centre
     Side parent;         // side of the parent cell's centre
-    bool measured;       // d is exact, up to list_distance_
+    bool measured;       // d is exact, up to the block's list distance
     // `triangle` is nearest to this centre, not to a parent's.
     bool exact;
     bool thick;  // holds no thin part (thin_part.h)
@@ -102,6 +104,7 @@ class Space {
     Vec3 center() const { return {x, y, z}; }
   };
   struct Block {
+    double list_distance;  // clearances are exact up to this
     std::vector<std::uint32_t> spheres;
     std::size_t taken = 0;  // number of spheres known to cells and maxima
     std::vector<Cell> cells;
@@ -109,22 +112,25 @@ class Space {
     std::vector<Sphere> maxima;
   };
 
-  void split_blocks();
-  std::array<Block, 8> split_block(std::uint32_t number, double list_distance);
-  void split_cells(Block& block, std::vector<Cell>& cells) const;
-  void leave_out(std::vector<BlockIndex::Coordinates>& coordinates);
-  void split(const Cell& cell, const std::vector<std::uint32_t>& near,
-             std::vector<Cell>& parts) const;
+  std::vector<std::uint32_t> promising(double radius) const;
+  bool is_cut(std::uint32_t block) const;
+  void keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most) const;
+  std::vector<std::uint32_t> split_blocks(const std::vector<std::uint32_t>& wide);
+  std::array<Block, 8> split_block(std::uint32_t number);
+  void split_cells(Block& block, int level, std::vector<Cell>& cells) const;
+  void leave_out();
+  void keep(const std::vector<std::uint32_t>& blocks);
+  void split(const Cell& cell, const Block& block, std::vector<Cell>& parts) const;
   SurfacePoint nearest_on_mesh(const Cell& cell, double within) const;
-  void estimate(Cell& cell, const std::vector<std::uint32_t>& near) const;
+  void estimate(Cell& cell, const Block& block) const;
   void measure(Cell& cell) const;
-  void bound_thin_part(Cell& cell) const;
+  void bound_narrow_part(Cell& cell, const Block& block) const;
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
   double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
                      std::vector<LinearBound>& bounds) const;
-  Side side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const;
+  Side side_of(const Cell& cell, const Block& block) const;
   static void settle(Cell& cell, Side side);
   static double farthest(const Cell& cell, const Sphere& from);
   void take_from(Block& block, const Sphere& sphere) const;
@@ -133,12 +139,10 @@ class Space {
   const SolidDistance& solid_;
   float smallest_;
   std::size_t most_blocks_;
-  bool left_out_ = false;
+  float left_out_ = 0;
+  double focus_ = HUGE_VAL;  // radius last searched for
   std::vector<Sphere> spheres_;
-  int level_ = 0;  // level of the blocks
-  // Clearances in a block are exact up to this. It starts above the cube's diagonal.
-  double list_distance_ = 2;
-  BlockIndex index_;
+  BlockTree tree_;
   std::vector<Block> blocks_;
   std::vector<float> bounds_;  // largest cell bound of each block
 };

@@ -11,7 +11,7 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kMaxTriangles = 48;
+constexpr std::size_t kMaxTriangles = 48, kMaxGapTriangles = 256;
 // Size of the region searched, in half edges: the way from a point between the planes to the nearer
 // one must not leave it.
 constexpr double kAround = 1.5;
@@ -33,6 +33,14 @@ Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
       kept.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
   }
   return kept;
+}
+
+// Returns the part of a triangle in the cube with this half edge, relative to its centre.
+Polygon clipped(const TriangleBvh::Corners& t, Vec3 center, double half_edge) {
+  Polygon polygon{t.a - center, t.b - center, t.c - center};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) polygon = clipped(polygon, axis, sign, half_edge);
+  return polygon;
 }
 
 struct Face {
@@ -58,10 +66,7 @@ std::vector<Face> faces_in(const SolidDistance& solid, std::span<const std::uint
   std::vector<Face> faces;
   for (const std::uint32_t index : triangles) {
     const TriangleBvh::Corners& t = solid.corners(index);
-    Polygon polygon{t.a - center, t.b - center, t.c - center};
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double sign : {-1.0, 1.0}) polygon = clipped(polygon, axis, sign, half_edge);
-    }
+    Polygon polygon = clipped(t, center, half_edge);
     const double area = area_of(polygon);
     if (!polygon.empty()) faces.push_back({std::move(polygon), normal_of(t), area});
   }
@@ -100,6 +105,45 @@ ThinPart thin_part(const SolidDistance& solid, Vec3 center, double half_edge) {
   if (!in_sight || solid.inside(center + above * up) || solid.inside(center + below * up))
     return {};
   return {.bound = 0.5 * (high - low)};
+}
+
+// The ray ends outside if it reaches the plane above all triangles around the cube, which turns its
+// back on the sphere, and if a point beyond that plane is outside. It starts at the sphere's
+// surface, so it climbs from there only.
+double gap_bound(const SolidDistance& solid, const Sphere& sphere, Vec3 center, double half_edge,
+                 double below) {
+  const double around = kAround * half_edge, margin = kBeyond * half_edge;
+  const Vec3 from = center - sphere.center;
+  const double distance = norm(from), half_diagonal = std::sqrt(3.0) * half_edge;
+  if (!(distance > half_diagonal)) return HUGE_VAL;
+  const Vec3 up = from / distance;
+  // Points of the cube outside of the sphere are at least this high above the cube's centre, and
+  // their rays this steep.
+  const double across = std::min(half_diagonal / sphere.radius, 1.0);
+  const double low =
+      std::max(sphere.radius * std::sqrt(1 - across * across) - distance, -half_diagonal);
+  const double steepness = (distance + low) / std::hypot(distance + low, half_diagonal);
+  const double highest = std::min(around, low + (around - half_edge) * steepness) - margin;
+  const double reach = sphere.radius + 2 * below;
+
+  std::array<std::uint32_t, kMaxGapTriangles> found;
+  const std::size_t count = solid.around(center, around, found);
+  if (count == 0 || count > kMaxGapTriangles) return HUGE_VAL;
+  double high = -around, farthest2 = 0;
+  const auto is_below = [&](Vec3 p) {
+    return dot(up, p) <= high && squared_norm(from + p) <= farthest2;
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const TriangleBvh::Corners& t = solid.corners(found[k]);
+    if (is_below(t.a - center) && is_below(t.b - center) && is_below(t.c - center)) continue;
+    for (const Vec3& p : clipped(t, center, around)) {
+      high = std::max(high, dot(up, p));
+      farthest2 = std::max(farthest2, squared_norm(from + p));
+    }
+    if (high > highest || farthest2 > reach * reach) return HUGE_VAL;
+  }
+  if (solid.is_inside_near(center + (high + margin) * up)) return HUGE_VAL;
+  return 0.5 * (std::sqrt(farthest2) - sphere.radius + kRounding);
 }
 
 }  // namespace vpm

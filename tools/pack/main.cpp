@@ -272,7 +272,7 @@ void say_result(const Program& program, const Arguments& a, const PackResult& re
     fewer("the gaps that are left are narrower than 1/131072 of the longest side");
   if (result.partly_searched)
     program.note(
-        "the spheres are so small beside the solid that only samples of its inside were searched");
+        "not all gaps were searched, so larger spheres may fit; a higher --spheres searches more");
 }
 
 // Says how much of a solid, whose box has these sides in metres, its spheres fill: the size shows a
