@@ -142,26 +142,32 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, std::span<const AnyBody
 // Asks body by body: all jobs before one, then before the next.
 void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                               std::span<const Job> jobs, std::span<Result> results) {
-  std::vector<Pose> exact(jobs.size());
-  for_each_job(jobs.size(), [&](std::size_t k) { exact[k] = exact_pose(jobs[k].pose); });
+  auto& [exact, placed, of_body, sums] = queries.front()->batch_room_;
+  const std::size_t count = jobs.size();
+  exact.resize(count);
+  placed.resize(count);
+  of_body.resize(count);
+  sums.resize(count);
+  for_each_job(count, [&](std::size_t k) {
+    exact[k] = exact_pose(jobs[k].pose);
+    sums[k] = {};
+  });
   std::vector<DeviceMeasure*> measures;
   for (const ToolQuery* query : queries) measures.push_back(query->device_.get());
   measures.front()->keep_only(scene);
-  std::vector<BodyJob> placed(jobs.size());
-  std::vector<BodySum> of_body(jobs.size());
-  std::vector<SceneSum> sums(jobs.size());
   for (const AnyBody& body : scene) {
-    for_each_job(jobs.size(), [&](std::size_t k) {
+    for_each_job(count, [&](std::size_t k) {
       const std::uint32_t tool = jobs[k].tool;
       placed[k] = {pose_in_body(body.to_world(), exact[k], queries[tool]->tool_.center_of_mass),
                    tool};
     });
     measures.front()->run(body, measures, placed, of_body);
-    for_each_job(jobs.size(), [&](std::size_t k) { sums[k].add(of_body[k]); });
+    const bool is_last = &body == &scene.back();
+    for_each_job(count, [&](std::size_t k) {
+      sums[k].add(of_body[k]);
+      if (is_last) results[k] = queries[jobs[k].tool]->finished(sums[k], exact[k]);
+    });
   }
-  for_each_job(jobs.size(), [&](std::size_t k) {
-    results[k] = queries[jobs[k].tool]->finished(sums[k], exact[k]);
-  });
 }
 
 void ToolQuery::forget() {

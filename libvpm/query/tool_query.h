@@ -52,6 +52,15 @@ class ToolQuery {
   std::span<const SphereState> states() const;
 
  private:
+  // Memory of a batch on a device, one of each for a job; used again, since new memory costs as
+  // much time as a device takes for small levels.
+  struct BatchRoom {
+    std::vector<Pose> exact;
+    std::vector<BodyJob> placed;
+    std::vector<BodySum> of_body;
+    std::vector<SceneSum> sums;
+  };
+
   static void run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                             std::span<const Job> jobs, std::span<Result> results);
   void check(std::span<const AnyBody> scene) const;
@@ -69,6 +78,7 @@ class ToolQuery {
   mutable std::vector<SphereState> states_;
   mutable std::vector<SphereState> of_body_;  // of the last one, if there are several
   std::size_t bodies_ = 1;                    // of the scene asked last
+  BatchRoom batch_room_;
 };
 
 // Returns where a measure is computed if queries may use `device`: there, but the measure as
