@@ -43,7 +43,9 @@ class GroupMeasure {
   __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, RawResult& found)
       : work_(work), shared_(shared), tasks_(work, shared.lists, found) {}
 
-  // Classifies the task groups of the block's part. Call from all threads.
+  // Classifies the task groups of the block's part. Call from all threads. kApart keeps the classes
+  // of groups in a function of their own, whose registers are not spilled all through the kernel.
+  template <bool kApart = false>
   __device__ void run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
@@ -55,7 +57,13 @@ class GroupMeasure {
     for (unsigned first = work_.part.part; first < work_.level.task_group_count;
          first += slots * work_.part.parts) {
       const unsigned c = first + slot * work_.part.parts;
-      if (c < work_.level.task_group_count) classify_group(c, slot, lanes);
+      if (c < work_.level.task_group_count) {
+        if constexpr (kApart) {
+          classify_group_apart(c, slot, lanes);
+        } else {
+          classify_group(c, slot, lanes);
+        }
+      }
       __syncthreads();
       note_uniform();
       classify_seen(first + slots * work_.part.parts >= work_.level.task_group_count);
@@ -119,6 +127,10 @@ class GroupMeasure {
   }
   __device__ PlanarCluster& planar_cluster_of(unsigned slot) const {
     return work_.space.planar_clusters[work_.part.part * blockDim.x + slot];
+  }
+  __device__ __noinline__ void classify_group_apart(std::uint32_t c, unsigned slot,
+                                                    const Subwarp& lanes) {
+    classify_group(c, slot, lanes);
   }
   template <class BallClass>
   __device__ ClusterClass classify_cluster(const TaskBall& ball, const BallClass& in_ball, Vec3 at,

@@ -239,7 +239,10 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     const PoseWork<Surface> work{
         level, launch.surface, to_surface, space, space.notes[turn % 2], counters, {}};
     found = RawResult{};
-    GroupMeasure<Surface>(work, shared.measure, found).run();
+    // Among points groups are classified apart: so batches take 5 % less time, single poses 15 %
+    // more.
+    constexpr bool kApart = !Surface::kTellsInside;
+    GroupMeasure<Surface>(work, shared.measure, found).template run<kApart>();
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
