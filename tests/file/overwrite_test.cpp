@@ -1,6 +1,7 @@
 #include "libvpm/file/overwrite.h"
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/container.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

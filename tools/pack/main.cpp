@@ -26,6 +26,8 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
+#include "libvpm/query/scene_scale.h"
+#include "libvpm/scene/any_body.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
