@@ -16,7 +16,7 @@ packages=(
   libglu1-mesa-dev libassimp-dev libexpat1-dev
   libjs-three python3 python3-numpy python3-matplotlib
 )
-test_packages=(libgtest-dev python3-jsonschema)
+test_packages=(libgtest-dev python3-jsonschema pybind11-dev python3-dev python3-pytest python3-venv)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -80,12 +80,14 @@ build_targets() {
   (cd "$repository" && cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$@"})
 }
 
-# Builds everything: programs, benchmarks and tests, with device code where there is nvcc.
+# Builds everything: programs, benchmarks and tests, with device code where there is nvcc, and the Python module where there is
+# pybind11.
 build() {
-  local cuda
-  mapfile -t cuda < <(cuda_options)
+  local more
+  mapfile -t more < <(cuda_options)
+  if is_installed pybind11-dev; then more+=(-DVPM_PYTHON=ON); fi
   say "Building into build/release (the first time takes some minutes)"
-  configure -DVPM_CUDA=AUTO "${cuda[@]}"
+  configure -DVPM_CUDA=AUTO "${more[@]}"
   build_targets
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
@@ -48,14 +49,39 @@ ImportOptions options_of(const ImportParameters& parameters) {
 }
 
 // Tells what vpm-normals tells too, by which SetupCheck knows how the points came to their place.
-nlohmann::json provenance_of(const ImportParameters& parameters) {
+nlohmann::json provenance_of(const ImportParameters& parameters, const char* function) {
   nlohmann::json told{{"axes", name_of(parameters.axes)}};
   if (parameters.camera_pose) {
     const Vec3 t = parameters.camera_pose->translation;
     const Quaternion q = quaternion_from_rotation(parameters.camera_pose->rotation);
     told["camera-pose"] = {t.x, t.y, t.z, q.x, q.y, q.z, q.w};
   }
-  return {{"tool", "vpm::import_cloud"}, {"version", VPM_VERSION}, {"parameters", told}};
+  return {{"tool", function}, {"version", VPM_VERSION}, {"parameters", told}};
+}
+
+// Returns the handle of a cloud that `function` has imported, and hands on what is said of it.
+PointCloud handle_of(ImportedCloud imported, const ImportParameters& parameters,
+                     const char* function, Remarks* remarks) {
+  imported.cloud.provenance = provenance_of(parameters, function);
+  if (remarks != nullptr) append(*remarks, imported.remarks);
+  return HandleAccess::make<PointCloud>(std::move(imported.cloud));
+}
+
+template <class Value>
+PointCloud cloud_of_image(std::span<const Value> values, std::uint32_t width, std::uint32_t height,
+                          const ImportParameters& parameters, Remarks* remarks) {
+  constexpr bool kCounts = std::is_same_v<Value, std::uint16_t>;
+  const ImportOptions options = options_of(parameters);
+  check(values.size() == std::uint64_t{width} * height,
+        std::to_string(width) + " x " + std::to_string(height) + " pixels, but " +
+            std::to_string(values.size()) + " values");
+  RawDepth raw;
+  raw.width = width;
+  raw.height = height;
+  raw.values.assign(values.begin(), values.end());
+  raw.are_integers = raw.are_16_bit = kCounts;
+  return handle_of(import_depth(raw, "the depth image", options), parameters, "vpm::import_depth",
+                   remarks);
 }
 
 }  // namespace
@@ -64,10 +90,19 @@ PointCloud import_cloud(const std::string& path, const ImportParameters& paramet
                         Remarks* remarks) {
   const ImportOptions options = options_of(parameters);
   const std::string name = path == "-" ? "standard input" : path;
-  ImportedCloud imported = import_cloud(file::read_all(path), name, options);
-  imported.cloud.provenance = provenance_of(parameters);
-  if (remarks != nullptr) append(*remarks, imported.remarks);
-  return HandleAccess::make<PointCloud>(std::move(imported.cloud));
+  return handle_of(import_cloud(file::read_all(path), name, options), parameters,
+                   "vpm::import_cloud", remarks);
+}
+
+PointCloud import_depth(std::span<const std::uint16_t> values, std::uint32_t width,
+                        std::uint32_t height, const ImportParameters& parameters,
+                        Remarks* remarks) {
+  return cloud_of_image(values, width, height, parameters, remarks);
+}
+
+PointCloud import_depth(std::span<const float> values, std::uint32_t width, std::uint32_t height,
+                        const ImportParameters& parameters, Remarks* remarks) {
+  return cloud_of_image(values, width, height, parameters, remarks);
 }
 
 }  // namespace vpm

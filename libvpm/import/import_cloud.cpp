@@ -86,11 +86,8 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
          name, cure);
 }
 
-ImportedScan scan_of_image(ScanFormat format, std::span<const std::byte> bytes,
-                           const std::string& name, const ImportOptions& options) {
-  // Reads the image first: a file that is no depth image must not be refused for want of
-  // intrinsics.
-  const RawDepth raw = parse_depth(format, bytes, name, options);
+ImportedScan scan_of_image(const RawDepth& raw, const std::string& name,
+                           const ImportOptions& options) {
   if (!options.intrinsics) {
     throw Error(ErrorKind::invalid_argument,
                 "a depth image needs `intrinsics`: fx,fy,cx,cy in pixels, or a file with them",
@@ -162,7 +159,9 @@ ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& na
       holds_points ? scan_of_points(format == ScanFormat::pcd ? parse_pcd(bytes, name)
                                                               : parse_ply_points(bytes, name),
                                     name, options)
-                   : scan_of_image(format, bytes, name, options);
+                   // The image comes first: a file that is none must not be refused for want of
+                   // intrinsics.
+                   : scan_of_image(parse_depth(format, bytes, name, options), name, options);
   if (!options.channel.empty() && format != ScanFormat::exr)
     scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
   return scan;
@@ -175,9 +174,10 @@ NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string&
                          name);
 }
 
-ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
-                           const ImportOptions& options) {
-  ImportedScan scan = import_scan(bytes, name, options);
+namespace {
+
+// Returns the cloud of a scan, with its facts and what is to be said of it.
+ImportedCloud cloud_of(ImportedScan scan, const std::string& name, const ImportOptions& options) {
   ImportedCloud imported;
   imported.width = scan.width;
   imported.height = scan.height;
@@ -203,6 +203,19 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
     imported.remarks.push_back(
         {true, "`flip` is not used: normals estimated from depth face the camera"});
   return imported;
+}
+
+}  // namespace
+
+ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
+                           const ImportOptions& options) {
+  return cloud_of(import_scan(bytes, name, options), name, options);
+}
+
+ImportedCloud import_depth(const RawDepth& raw, const std::string& name,
+                           const ImportOptions& options) {
+  check_image_size(raw.width, raw.height, name);
+  return cloud_of(scan_of_image(raw, name, options), name, options);
 }
 
 }  // namespace vpm

@@ -13,6 +13,7 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/import/depth_files.h"
 #include "libvpm/import/depth_values.h"
 #include "libvpm/import/intrinsics_file.h"
 #include "libvpm/import/remark.h"
@@ -79,6 +80,10 @@ NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string&
 // NothingMeasured), Error(invalid_argument) for depth images without intrinsics, Error(unavailable)
 // for formats that this build lacks.
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
+                           const ImportOptions& options);
+
+// Returns the cloud of a depth image, as import_cloud does of a file that holds it.
+ImportedCloud import_depth(const RawDepth& raw, const std::string& name,
                            const ImportOptions& options);
 
 }  // namespace vpm

@@ -240,6 +240,31 @@ TEST(PublicApi, AnImportSaysWhatIsDoubtedAndTakesTheCure) {
   EXPECT_NEAR(query.run(scene, behind(0.02)).volume, query.run(wall(), behind(0.02)).volume, 1e-8);
 }
 
+TEST(PublicApi, AnImageInMemoryIsImportedAsAFileIs) {
+  std::vector<std::uint16_t> counts(std::size_t{kSide} * kSide, 1000);
+  std::vector<float> metres(counts.size(), 1);
+  for (std::size_t k = 700; k < 760; ++k) counts[k] = 1250, metres[k] = 1.25F;
+  const vpm::ImportParameters parameters{.intrinsics = kCamera.intrinsics};
+  vpm::Remarks remarks;
+  const auto volume_of = [](const vpm::PointCloud& cloud) {
+    return vpm::Query(tool()).run(vpm::Scene(cloud), behind(0.02)).volume;
+  };
+  const double expected = volume_of(vpm::PointCloud::from_depth(metres, kCamera));
+  EXPECT_EQ(volume_of(vpm::import_depth(counts, kSide, kSide, parameters, &remarks)), expected);
+  EXPECT_EQ(volume_of(vpm::import_depth(metres, kSide, kSide, parameters, &remarks)), expected);
+  EXPECT_TRUE(remarks.empty());
+  // What a file's import says of counts and of floats, it says of these.
+  const std::vector<float> millimetres(counts.begin(), counts.end());
+  vpm::import_depth(millimetres, kSide, kSide, parameters, &remarks);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(has(remarks.front().text, "`depth_scale`")) << remarks.front().text;
+  EXPECT_TRUE(error_of([&] { vpm::import_depth(counts, kSide, kSide + 1, parameters); }));
+  EXPECT_TRUE(error_of([&] { vpm::import_depth(counts, 0, 0, parameters); }));
+  EXPECT_TRUE(error_of([&] { vpm::import_depth(counts, kSide, kSide, {}); }));  // no intrinsics
+  EXPECT_TRUE(error_of(
+      [&] { vpm::import_depth(std::vector<float>(counts.size()), kSide, kSide, parameters); }));
+}
+
 TEST(PublicApi, AnImportRefusesParametersOutOfRange) {
   const WallFile file(1);
   const auto kind_of = [&](const auto& change) {

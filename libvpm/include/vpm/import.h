@@ -1,4 +1,4 @@
-// Clouds of the files that sensors and other programs write. Library vpm::solid.
+// Clouds of the files and images that sensors and other programs write. Library vpm::solid.
 #pragma once
 
 #include <vpm/camera.h>
@@ -6,8 +6,10 @@
 #include <vpm/remark.h>
 #include <vpm/scene.h>
 
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,17 @@ struct ImportParameters {
 // Error(invalid_argument) for a depth image without intrinsics and for parameters out of range;
 // Error(unavailable) for OpenEXR and TIFF in builds without them. Thread-safe.
 VPM_API PointCloud import_cloud(const std::string& path, const ImportParameters& parameters = {},
+                                Remarks* remarks = nullptr);
+
+// Returns the cloud of a depth image in memory, as import_cloud() does of a file that holds the
+// same width * height values, row by row from the top: counts of 16 bits, 1000 to the metre unless
+// `depth_scale` says otherwise, or metres in float. Throws Error(invalid_argument) if there are not
+// so many values; otherwise as import_cloud(). Thread-safe.
+VPM_API PointCloud import_depth(std::span<const std::uint16_t> values, std::uint32_t width,
+                                std::uint32_t height, const ImportParameters& parameters,
+                                Remarks* remarks = nullptr);
+VPM_API PointCloud import_depth(std::span<const float> values, std::uint32_t width,
+                                std::uint32_t height, const ImportParameters& parameters,
                                 Remarks* remarks = nullptr);
 
 }  // namespace vpm

@@ -1,0 +1,328 @@
+// How much of a tool is inside a scene: Query, LevelQuery, their results, and SetupCheck.
+#include <pybind11/stl.h>
+#include <vpm/level_query.h>
+#include <vpm/query.h>
+#include <vpm/setup_check.h>
+
+#include <memory>
+#include <mutex>
+
+#include "libvpm/python/arrays.h"
+
+namespace vpm::python {
+namespace {
+
+Measure measure_of(const std::string& text) {
+  return choice<Measure>(text, "measure",
+                         {{"refined", Measure::refined}, {"paper", Measure::paper}});
+}
+
+QueryOptions options_of(const std::string& measure, std::uint32_t level, const std::string& device,
+                        bool coherent, const std::string& shadows, double stiffness) {
+  return {measure_of(measure),
+          level,
+          device_from_text(device),
+          coherent,
+          choice<Shadows>(shadows, "shadows", {{"near", Shadows::near}, {"solid", Shadows::solid}}),
+          stiffness};
+}
+
+std::vector<Tool> tools_of(const py::object& tools) {
+  if (py::isinstance<Tool>(tools)) return {tools.cast<Tool>()};
+  return tools.cast<std::vector<Tool>>();
+}
+
+// A query, and the lock that lets one thread at a time ask it while others run Python.
+template <class Asked>
+struct Locked {
+  template <class... Arguments>
+  explicit Locked(Arguments&&... arguments) : query(std::forward<Arguments>(arguments)...) {}
+
+  // Calls the function without Python's lock, one thread after another.
+  template <class Action>
+  auto ask(const Action& action) {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard turn(*busy);
+    return action(query);
+  }
+
+  Asked query;
+  std::unique_ptr<std::mutex> busy = std::make_unique<std::mutex>();
+};
+
+// Answers of many poses side by side. Its arrays share this memory.
+struct Results {
+  std::vector<Result> answers;
+
+  const Result& at(py::ssize_t k) const {
+    const auto count = static_cast<py::ssize_t>(answers.size());
+    if (k < -count || k >= count) throw py::index_error();
+    return answers[static_cast<std::size_t>(k < 0 ? k + count : k)];
+  }
+};
+
+// Returns a member of all results as an array that shares their memory; `owner` is their object.
+template <class Value>
+py::array column_of(const py::object& owner, const Value Result::*member) {
+  const auto& answers = owner.cast<const Results&>().answers;
+  const Value* const first = answers.empty() ? nullptr : &(answers.front().*member);
+  py::array_t<Value> column({answers.size()}, {sizeof(Result)}, first, owner);
+  py::detail::array_proxy(column.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return column;
+}
+// The same for a vector of the wrench: shape (N, 3).
+py::array column_of(const py::object& owner, const Vec3 Wrench::*member) {
+  const auto& answers = owner.cast<const Results&>().answers;
+  const double* const first = answers.empty() ? nullptr : &(answers.front().wrench.*member).x;
+  py::array_t<double> column({answers.size(), std::size_t{3}}, {sizeof(Result), sizeof(double)},
+                             first, owner);
+  py::detail::array_proxy(column.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return column;
+}
+
+void bind_results(py::module_& module) {
+  py::class_<Result>(module, "Result", "Answer of a query at one pose.")
+      .def_readonly("volume", &Result::volume, "Volume of the tool inside the scene's solid, m^3.")
+      .def_readonly("volume_fraction", &Result::volume_fraction,
+                    "That volume over the volume of the tool.")
+      .def_property_readonly(
+          "force", [](const Result& result) { return array_of(result.wrench.force); },
+          "Array (3,) in world axes, which pushes the tool out: N, or m^3 with stiffness 1.")
+      .def_property_readonly(
+          "torque", [](const Result& result) { return array_of(result.wrench.torque); },
+          "Array (3,) in world axes about the tool's centre of mass: N m, or m^4 with stiffness 1.")
+      .def_readonly("boundary", &Result::boundary, "Number of spheres that the surface cuts.")
+      .def_readonly("inside", &Result::inside, "Number of spheres behind the surface that count.")
+      .def_readonly("points", &Result::points,
+                    "Number of points of the scene inside spheres; None but for the paper measure.")
+      .def("__repr__", [](const Result& result) {
+        const Vec3 f = result.wrench.force;
+        return py::str(
+                   "<vpm.Result: {:.4g} % of the tool, {:.6g} m^3, force ({:.4g}, {:.4g}, "
+                   "{:.4g})>")
+            .format(100 * result.volume_fraction, result.volume, f.x, f.y, f.z);
+      });
+  py::class_<Results>(module, "Results",
+                      "Answers of many poses, in their order. Its arrays share one memory and "
+                      "cannot be written.")
+      .def("__len__", [](const Results& results) { return results.answers.size(); })
+      .def("__getitem__", &Results::at, py::arg("index"), "Returns one vpm.Result.")
+      .def_property_readonly(
+          "volume", [](const py::object& self) { return column_of(self, &Result::volume); },
+          "Array (N,), m^3.")
+      .def_property_readonly(
+          "volume_fraction",
+          [](const py::object& self) { return column_of(self, &Result::volume_fraction); },
+          "Array (N,).")
+      .def_property_readonly(
+          "force", [](const py::object& self) { return column_of(self, &Wrench::force); },
+          "Array (N, 3) in world axes: N, or m^3 with stiffness 1.")
+      .def_property_readonly(
+          "torque", [](const py::object& self) { return column_of(self, &Wrench::torque); },
+          "Array (N, 3) about the centre of mass: N m, or m^4 with stiffness 1.")
+      .def_property_readonly(
+          "boundary", [](const py::object& self) { return column_of(self, &Result::boundary); },
+          "Array (N,) of spheres that the surface cuts.")
+      .def_property_readonly(
+          "inside", [](const py::object& self) { return column_of(self, &Result::inside); },
+          "Array (N,) of spheres behind the surface that count.");
+}
+
+std::vector<Job> jobs_of(const Numbers& numbers, const py::object& tool) {
+  const std::vector<Pose> poses = poses_of(numbers);
+  std::vector<Job> jobs(poses.size());
+  for (std::size_t k = 0; k < jobs.size(); ++k) jobs[k].pose = poses[k];
+  if (tool.is_none()) return jobs;
+  using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+  const Indices tools(tool);
+  if (tools.ndim() != 1 || tools.shape(0) != static_cast<py::ssize_t>(jobs.size()))
+    reject("`tool` must have the shape (N,), an index for each pose");
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    jobs[k].tool = tools.at(static_cast<py::ssize_t>(k));
+  return jobs;
+}
+
+py::array array_of(const std::vector<SphereState>& states) {
+  return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(states.size()),
+                                   reinterpret_cast<const std::uint8_t*>(states.data()));
+}
+
+void bind_single_query(py::module_& module) {
+  using LockedQuery = Locked<Query>;
+  py::class_<LockedQuery>(
+      module, "Query",
+      "How much of a tool is inside a scene's solid, and which wrench pushes it out (Kaluschke, "
+      "Weller, Zachmann 2017). Threads that ask one query take turns; other Python threads run "
+      "meanwhile. The same input gives the same bits on every device, for any number of threads.")
+      .def(py::init([](const py::object& tools, const std::string& measure, std::uint32_t level,
+                       const std::string& device, bool coherent, const std::string& shadows,
+                       double stiffness) {
+             const std::vector<Tool> list = tools_of(tools);
+             const QueryOptions options =
+                 options_of(measure, level, device, coherent, shadows, stiffness);
+             const py::gil_scoped_release unlocked;
+             return std::make_unique<LockedQuery>(list, options);
+           }),
+           py::arg("tools"), py::kw_only(), py::arg("measure") = "refined", py::arg("level") = 0,
+           py::arg("device") = "cpu", py::arg("coherent") = false, py::arg("shadows") = "near",
+           py::arg("stiffness") = 1.0,
+           "tools: a vpm.Tool, or a list of them.\nmeasure: \"refined\", or \"paper\", the "
+           "algorithm as printed.\nlevel: number of spheres; 0: the finest level.\ndevice: "
+           "\"cpu\", \"cuda\", \"cuda:1\", \"cuda:all\" or \"auto\".\ncoherent: the poses are "
+           "those of one motion.\nshadows: \"near\" or \"solid\": which places count that a depth "
+           "image does not show.\nstiffness: N/m^3; with 1 force and torque are in m^3 and "
+           "m^4.\n\nRaises ArgumentError for options out of range or that exclude each other, "
+           "UnavailableError if the device is not there.")
+      .def(
+          "run",
+          [](LockedQuery& self, const Scene& scene, const Numbers& pose) {
+            const Pose at = pose_of(pose);
+            return self.ask([&](Query& query) { return query.run(scene, at); });
+          },
+          py::arg("scene"), py::arg("pose"),
+          "Returns the vpm.Result of the first tool at a pose: 7 numbers tx ty tz qx qy qz qw, or "
+          "a matrix (4, 4) or (3, 4); tool to world, m. Raises RefusedError for a pose that is not "
+          "finite or not rigid.")
+      .def(
+          "run_batch",
+          [](LockedQuery& self, const Scene& scene, const Numbers& poses, const py::object& tool) {
+            const std::vector<Job> jobs = jobs_of(poses, tool);
+            return self.ask([&](Query& query) {
+              Results results{std::vector<Result>(jobs.size())};
+              query.run(scene, jobs, results.answers);
+              return results;
+            });
+          },
+          py::arg("scene"), py::arg("poses"), py::arg("tool") = py::none(),
+          "Returns the vpm.Results of N poses, (N, 7), (N, 4, 4) or (N, 3, 4); the bits of run() "
+          "one by one.\n\ntool: (N,) index of each pose's tool; without, all are of the first.")
+      .def(
+          "forget", [](LockedQuery& self) { self.ask([](Query& query) { query.forget(); }); },
+          "Ends a motion of coherent poses.")
+      .def(
+          "states",
+          [](LockedQuery& self) {
+            return array_of(self.ask([](Query& query) {
+              const auto states = query.states();
+              return std::vector<SphereState>(states.begin(), states.end());
+            }));
+          },
+          "Returns the state of each sphere at the last single pose: an array (spheres,) of 0 "
+          "outside, 1 cut by the surface, 2 inside.")
+      .def(
+          "level",
+          [](LockedQuery& self, std::size_t tool) {
+            return self.ask([&](Query& query) { return query.level(tool); });
+          },
+          py::arg("tool") = 0, "Returns the number of spheres that are used of a tool.");
+}
+
+const char* text_of(LevelReason reason) {
+  switch (reason) {
+    case LevelReason::none:
+      return "none";
+    case LevelReason::max_error:
+      return "max_error";
+    case LevelReason::scene:
+      return "scene";
+    case LevelReason::deadline:
+      return "deadline";
+    case LevelReason::deadline_over_max_error:
+      return "deadline_over_max_error";
+    case LevelReason::deadline_over_scene:
+      return "deadline_over_scene";
+    case LevelReason::deadline_missed:
+      return "deadline_missed";
+  }
+  return "none";
+}
+
+void bind_level_query(py::module_& module) {
+  using LockedQuery = Locked<LevelQuery>;
+  py::class_<LockedQuery>(module, "LevelQuery",
+                          "A query at the level of detail that a request chooses.")
+      .def(py::init([](const Tool& tool, const Scene& scene, const Numbers& first_pose,
+                       std::optional<double> max_error, std::optional<double> deadline_seconds,
+                       bool for_scene, const std::string& measure, const std::string& device,
+                       const std::string& shadows, double stiffness) {
+             const Pose pose = pose_of(first_pose);
+             const QueryOptions options = options_of(measure, 0, device, false, shadows, stiffness);
+             const LevelRequest request{max_error, deadline_seconds, for_scene};
+             const py::gil_scoped_release unlocked;
+             return std::make_unique<LockedQuery>(tool, options, request, scene, pose);
+           }),
+           py::arg("tool"), py::arg("scene"), py::arg("first_pose"), py::kw_only(),
+           py::arg("max_error") = py::none(), py::arg("deadline_seconds") = py::none(),
+           py::arg("for_scene") = false, py::arg("measure") = "refined", py::arg("device") = "cpu",
+           py::arg("shadows") = "near", py::arg("stiffness") = 1.0,
+           "max_error: fraction of the tool's volume that the calibrated worst error may "
+           "be.\ndeadline_seconds: time of each query; wins over the others.\nfor_scene: no "
+           "spheres that the scene's points cannot resolve.\n\nRaises RefusedError if the tool has "
+           "no calibration or no such level.")
+      .def(
+          "run",
+          [](LockedQuery& self, const Scene& scene, const Numbers& pose) {
+            const Pose at = pose_of(pose);
+            return self.ask([&](LevelQuery& query) { return query.run(scene, at); });
+          },
+          py::arg("scene"), py::arg("pose"), "Returns the vpm.Result at the level of the moment.")
+      .def_property_readonly(
+          "level", [](LockedQuery& self) { return self.ask([](auto& q) { return q.level(); }); },
+          "Number of spheres of the level last used.")
+      .def_property_readonly(
+          "seconds",
+          [](LockedQuery& self) { return self.ask([](auto& q) { return q.seconds(); }); },
+          "Seconds that the last run took.")
+      .def_property_readonly(
+          "reason",
+          [](LockedQuery& self) { return text_of(self.ask([](auto& q) { return q.reason(); })); },
+          "Which part of the request chose the level.");
+}
+
+void bind_setup_check(py::module_& module) {
+  py::class_<Remark>(module, "Remark", "What is said of a setup that is probably wrong.")
+      .def_readonly("is_warning", &Remark::is_warning, "True if it is likely not what was meant.")
+      .def_readonly("text", &Remark::text, "One sentence with its cure.")
+      .def("__repr__", [](const Remark& remark) { return "<vpm.Remark: " + remark.text + ">"; });
+  py::class_<SetupCheck>(module, "SetupCheck",
+                         "Finds setups that are probably wrong: units, frames of poses and "
+                         "cameras, unseen places. Belongs to one thread at a time.")
+      .def(py::init(
+               [](const py::object& tools, const PointCloud& cloud, const std::string& measure) {
+                 const std::vector<Tool> list = tools_of(tools);
+                 return SetupCheck(list, cloud, measure_of(measure));
+               }),
+           py::arg("tools"), py::arg("cloud"), py::kw_only(), py::arg("measure") = "refined",
+           "tools: a vpm.Tool, or a list of them.")
+      .def(
+          "see",
+          [](SetupCheck& check, const Numbers& pose, const Result& result, std::size_t tool) {
+            check.see(pose_of(pose), result, tool);
+          },
+          py::arg("pose"), py::arg("result"), py::arg("tool") = 0,
+          "Notes the answer that a query gave at a pose of a tool.")
+      .def(
+          "see",
+          [](SetupCheck& check, const Numbers& poses, const Results& results) {
+            const std::vector<Pose> at = poses_of(poses);
+            if (at.size() != results.answers.size())
+              reject(std::to_string(at.size()) + " poses, but " +
+                     std::to_string(results.answers.size()) + " results");
+            for (std::size_t k = 0; k < at.size(); ++k) check.see(at[k], results.answers[k]);
+          },
+          py::arg("poses"), py::arg("results"), "Notes the answers of a batch of the first tool.")
+      .def("remarks", &SetupCheck::remarks,
+           "Returns a list with a warning and its cure if something is probably wrong, else an "
+           "empty one. Known in part before the first pose.");
+}
+
+}  // namespace
+
+void bind_query(py::module_& module) {
+  bind_results(module);
+  bind_single_query(module);
+  bind_level_query(module);
+  bind_setup_check(module);
+}
+
+}  // namespace vpm::python

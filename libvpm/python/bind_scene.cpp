@@ -1,0 +1,267 @@
+// What tools are measured against: PointCloud, Body, Scene, DepthStream.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <vpm/depth_stream.h>
+#include <vpm/import.h>
+#include <vpm/scene.h>
+
+#include "libvpm/python/arrays.h"
+
+namespace vpm::python {
+namespace {
+
+using Path = std::filesystem::path;
+
+NormalOptions normals_of(const std::string& method, int window, double edge_gate) {
+  return {method_of(method), window, edge_gate};
+}
+
+// Parameters of an import that Python gives by name, and how they are declared.
+struct ImportArguments {
+  py::object intrinsics, camera_pose;
+  std::string axes;
+  std::optional<double> depth_scale;
+  std::string decode;
+  std::vector<double> invalid;
+  bool usual_invalid;
+  std::optional<std::pair<double, double>> range;
+  bool along_ray;
+  std::string channel;
+  bool flip;
+  std::string method;
+  int window;
+  double edge_gate;
+
+  static ImportArguments of(const py::kwargs& given) {
+    ImportArguments all;
+    py::dict rest = given.attr("copy")();
+    const auto take = [&](const char* name, auto fallback) {
+      if (!rest.contains(name)) return fallback;
+      return rest.attr("pop")(name).cast<decltype(fallback)>();
+    };
+    all.intrinsics = take("intrinsics", py::object(py::none()));
+    all.camera_pose = take("camera_pose", py::object(py::none()));
+    all.axes = take("axes", std::string("opencv"));
+    all.depth_scale = take("depth_scale", std::optional<double>());
+    all.decode = take("decode", std::string());
+    all.invalid = take("invalid", std::vector<double>());
+    all.usual_invalid = take("usual_invalid", true);
+    all.range = take("range", std::optional<std::pair<double, double>>());
+    all.along_ray = take("along_ray", false);
+    all.channel = take("channel", std::string());
+    all.flip = take("flip", false);
+    all.method = take("method", std::string("inverse-depth"));
+    all.window = take("window", NormalOptions().window);
+    all.edge_gate = take("edge_gate", kEdgeGate);
+    for (const auto& [name, value] : rest)
+      throw py::type_error("unexpected keyword argument '" + name.cast<std::string>() + "'");
+    return all;
+  }
+
+  ImportParameters parameters() const {
+    ImportParameters made;
+    if (!intrinsics.is_none()) made.intrinsics = intrinsics_of(Numbers(intrinsics));
+    if (!camera_pose.is_none()) made.camera_pose = pose_of(Numbers(camera_pose));
+    made.axes = axes_of(axes);
+    made.depth_scale = depth_scale;
+    made.decode = decode;
+    made.invalid = invalid;
+    made.usual_invalid = usual_invalid;
+    if (range) made.range = {range->first, range->second};
+    made.along_ray = along_ray;
+    made.channel = channel;
+    made.flip = flip;
+    made.normals = normals_of(method, window, edge_gate);
+    return made;
+  }
+};
+
+constexpr const char* kImportArguments =
+    "intrinsics: fx, fy, cx, cy in pixels, or a matrix (3, 3); needed for depth images.\n"
+    "camera_pose: pose of the camera, or of the points' frame, in the world.\n"
+    "axes: \"opencv\" (x right, y down, z forward), \"opengl\" or \"ros\".\n"
+    "depth_scale: units per metre; 1000 for integers and 1 for floats unless given.\n"
+    "decode: \"swapped\", \"big-endian\", \"rotated\", \"disparity\", or several with commas.\n"
+    "invalid: values that mean \"not measured\"; usual_invalid: 0, 65535 and the like do too.\n"
+    "range: (nearest, farthest), m; other depths count as not measured.\n"
+    "along_ray: values are distances along the ray. channel: of an OpenEXR image.\n"
+    "flip: turns the normals of points without camera.\n"
+    "method, window, edge_gate: how normals are estimated (\"inverse-depth\" or \"pca\").\n\n"
+    "Warnings are vpm.SetupWarning, notes go to the logger \"vpm\". Raises RefusedError, naming "
+    "the defect, and ArgumentError for arguments out of range. Thread-safe.";
+
+template <class Value>
+using Image = py::array_t<Value, py::array::c_style | py::array::forcecast>;
+
+// Imports the pixels of an array of 16-bit counts or floats.
+template <class Value>
+PointCloud import_pixels(const py::array& image, const ImportParameters& parameters,
+                         Remarks& remarks) {
+  const Image<Value> pixels(image);
+  const auto height = static_cast<std::uint32_t>(image.shape(0)),
+             width = static_cast<std::uint32_t>(image.shape(1));
+  const std::span<const Value> values(pixels.data(), static_cast<std::size_t>(pixels.size()));
+  const py::gil_scoped_release unlocked;
+  return import_depth(values, width, height, parameters, &remarks);
+}
+
+PointCloud import_image(const py::array& image, const ImportParameters& parameters) {
+  if (image.ndim() != 2) reject("a depth image is an array of shape (height, width)");
+  Remarks remarks;
+  const bool are_counts = image.dtype().kind() == 'u' && image.itemsize() == 2;
+  if (!are_counts && image.dtype().kind() != 'f')
+    reject("a depth image is of uint16 or of floats", "give image.astype(numpy.uint16), or metres");
+  PointCloud cloud = are_counts ? import_pixels<std::uint16_t>(image, parameters, remarks)
+                                : import_pixels<float>(image, parameters, remarks);
+  show(remarks, 1);  // vpm/__init__.py stands between
+  return cloud;
+}
+
+void bind_cloud(py::module_& module) {
+  py::class_<PointCloud>(module, "PointCloud",
+                         "Measured points with normals into free space. Immutable, thread-safe.")
+      .def_static(
+          "read", [](const Path& path) { return PointCloud::read(path.string()); }, py::arg("path"),
+          py::call_guard<py::gil_scoped_release>(),
+          "Reads a .vpmc file. Raises RefusedError, naming the first defect.")
+      .def_static(
+          "from_points",
+          [](const Numbers& positions, const Numbers& normals) {
+            const auto at = vectors_of(positions, "positions"), to = vectors_of(normals, "normals");
+            const py::gil_scoped_release unlocked;
+            return PointCloud::from_points(at, to);
+          },
+          py::arg("positions"), py::arg("normals"),
+          "Makes the cloud of points that no camera's image holds.\n\npositions: (N, 3) in the "
+          "world, m. normals: (N, 3) of any length, pointing into free space. Points that are not "
+          "finite are left out. Raises ArgumentError if the numbers differ, RefusedError if fewer "
+          "than two places remain. Thread-safe.")
+      .def(
+          "write", [](const PointCloud& cloud, const Path& path) { cloud.write(path.string()); },
+          py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+          "Writes a .vpmc file, replacing it in one step. Raises WriteError.")
+      .def("__len__", &PointCloud::size)
+      .def_property_readonly(
+          "has_camera", [](const PointCloud& cloud) { return cloud.camera().has_value(); },
+          "True if the cloud is a depth image with its camera.")
+      .def("__repr__", [](const PointCloud& cloud) {
+        return py::str("<vpm.PointCloud: {} points{}>")
+            .format(cloud.size(), cloud.camera() ? ", a depth image" : "");
+      });
+  module.def(
+      "import_cloud",
+      [](const std::string& path, const py::kwargs& given) {
+        const ImportParameters parameters = ImportArguments::of(given).parameters();
+        Remarks remarks;
+        const auto import = [&] {
+          const py::gil_scoped_release unlocked;
+          return import_cloud(path, parameters, &remarks);
+        };
+        PointCloud cloud = import();
+        show(remarks, 1);  // vpm/__init__.py stands between
+        return cloud;
+      },
+      py::arg("path"),
+      (std::string("Returns the cloud of a PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD or PLY "
+                   "file.\n\n") +
+       kImportArguments)
+          .c_str());
+  module.def(
+      "import_depth",
+      [](const py::array& image, const py::kwargs& given) {
+        return import_image(image, ImportArguments::of(given).parameters());
+      },
+      py::arg("image"),
+      (std::string("Returns the cloud of a depth image in memory: an array (height, width) of "
+                   "uint16 counts or of floats, m, along the optical axis.\n\n") +
+       kImportArguments)
+          .c_str());
+}
+
+void bind_body(py::module_& module) {
+  py::class_<Body>(module, "Body", "Body made ready for queries. Immutable and thread-safe.")
+      .def(py::init([](const PointCloud& cloud, bool denoising) {
+             const py::gil_scoped_release unlocked;
+             return Body(cloud, denoising_of(denoising));
+           }),
+           py::arg("cloud"), py::kw_only(), py::arg("denoising") = true,
+           "Prepares a cloud for queries: a millisecond for a depth image, a second for as many "
+           "points without a camera. denoising: frees points of most of their noise.")
+      .def_property_readonly("points", &Body::points, py::call_guard<py::gil_scoped_release>(),
+                             "Number of points with a normal.");
+  py::class_<Scene>(module, "Scene",
+                    "Bodies in one world frame, whose volumes, forces and torques add up. "
+                    "Immutable and thread-safe.")
+      .def(py::init<std::vector<Body>>(), py::arg("bodies"), "Makes a scene of several bodies.")
+      .def(py::init<const Body&>(), py::arg("body"), "Makes a scene of one body.")
+      .def(py::init([](const PointCloud& cloud) {
+             const py::gil_scoped_release unlocked;
+             return Scene(cloud);
+           }),
+           py::arg("cloud"), "Prepares a cloud and makes a scene of it: once, not for each pose.")
+      .def_property_readonly("bodies", &Scene::bodies, "List of the bodies.");
+}
+
+// A stream with the size of its images.
+struct SizedStream {
+  DepthStream stream;
+  std::uint32_t width, height;
+  bool are_counts;
+};
+
+void bind_stream(py::module_& module) {
+  py::class_<SizedStream>(module, "DepthStream",
+                          "Depth images as a camera delivers them, made ready for queries; on a "
+                          "device without a way back. Belongs to one thread at a time.")
+      .def(py::init([](const Numbers& intrinsics, std::uint32_t width, std::uint32_t height,
+                       std::optional<double> counts_per_metre, const std::string& device,
+                       const std::string& method, int window, double edge_gate, bool denoising) {
+             const DepthStreamOptions options{intrinsics_of(intrinsics),
+                                              width,
+                                              height,
+                                              counts_per_metre,
+                                              normals_of(method, window, edge_gate),
+                                              device_from_text(device),
+                                              denoising_of(denoising)};
+             return SizedStream{DepthStream(options), width, height, counts_per_metre.has_value()};
+           }),
+           py::arg("intrinsics"), py::arg("width"), py::arg("height"), py::kw_only(),
+           py::arg("counts_per_metre") = py::none(), py::arg("device") = "cpu",
+           py::arg("method") = "inverse-depth", py::arg("window") = NormalOptions().window,
+           py::arg("edge_gate") = kEdgeGate, py::arg("denoising") = true,
+           "intrinsics: fx, fy, cx, cy in pixels, or a matrix (3, 3). counts_per_metre: images are "
+           "uint16 counts; without, metres in float32. device: that of the queries. Raises "
+           "ArgumentError, or UnavailableError if the device is not there.")
+      .def(
+          "image",
+          [](const py::object& self) {
+            auto& sized = self.cast<SizedStream&>();
+            const std::vector<py::ssize_t> shape{sized.height, sized.width};
+            if (sized.are_counts)
+              return py::array(
+                  py::array_t<std::uint16_t>(shape, sized.stream.counts().data(), self));
+            return py::array(py::array_t<float>(shape, sized.stream.metres().data(), self));
+          },
+          "Returns the memory of the next image, (height, width), to be written before prepare() "
+          "and not after it.")
+      .def(
+          "prepare",
+          [](SizedStream& sized, const Numbers& camera_to_world) {
+            const Pose pose = pose_of(camera_to_world);
+            const py::gil_scoped_release unlocked;
+            return sized.stream.prepare(pose);
+          },
+          py::arg("camera_to_world"),
+          "Returns the vpm.Body of the image that was written, seen from this pose. Raises "
+          "RefusedError, here or in the first query, for a pose or an image without any normal.");
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  bind_cloud(module);
+  bind_body(module);
+  bind_stream(module);
+}
+
+}  // namespace vpm::python

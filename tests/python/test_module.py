@@ -1,0 +1,283 @@
+"""The Python module: what it gives is what the library gives, and what it promises of arrays, errors and threads."""
+import ast
+import importlib.util
+import inspect
+import logging
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import types
+
+import numpy as np
+import pytest
+
+import vpm
+
+CUBE = np.array([[x, y, z] for z in (-0.1, 0.1) for y in (-0.1, 0.1) for x in (-0.1, 0.1)])
+FACES = np.array([[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+                  [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]])
+K = (60, 60, 29.5, 29.5)
+
+
+@pytest.fixture(scope="module")
+def tool():
+    return vpm.make_tool((CUBE, FACES), spheres=120, levels=[40], calibrate=True)
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K)
+
+
+@pytest.fixture(scope="module")
+def scene(cloud):
+    return vpm.Scene(cloud)
+
+
+def poses_into_the_wall(count):
+    poses = np.tile([0.01, -0.02, 0.0, 0.1, 0.2, 0.3, 0.927361849549570], (count, 1))
+    poses[:, 2] = np.linspace(0.8, 1.2, count)
+    return poses
+
+
+def matrices_of(poses):
+    made = np.zeros((len(poses), 4, 4))
+    x, y, z, w = poses[:, 3:].T
+    made[:, :3, :3] = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]).transpose(2, 0, 1)
+    made[:, :3, 3] = poses[:, :3]
+    made[:, 3, 3] = 1
+    return made
+
+
+def test_half_of_a_cube_is_behind_a_wall(tool, scene):
+    result = vpm.Query(tool, stiffness=100).run(scene, [0, 0, 1, 0, 0, 0, 1])
+    assert tool.volume == pytest.approx(0.008, rel=1e-12)
+    assert result.volume_fraction == pytest.approx(0.5, abs=2e-3)
+    assert result.volume == pytest.approx(result.volume_fraction * tool.volume, rel=1e-12)
+    # The energy of a cube half behind a plane: the area times the mean depth, 0.04 * 0.1^2 / 2, has this derivative.
+    assert result.force == pytest.approx([0, 0, -100 * 0.04 * 0.1], rel=0.01, abs=1e-6)
+    assert result.points is None
+
+
+def test_a_batch_has_the_bits_of_single_poses_in_every_form(tool, scene):
+    poses = poses_into_the_wall(50)
+    query = vpm.Query(tool)
+    singles = [query.run(scene, pose) for pose in poses]
+    batch = query.run_batch(scene, poses)
+    assert len(batch) == 50 and batch.force.shape == (50, 3) and batch.volume.dtype == np.float64
+    for name in ("volume", "volume_fraction", "force", "torque", "boundary", "inside"):
+        expected = np.array([getattr(single, name) for single in singles])
+        assert np.array_equal(getattr(batch, name), expected)
+    assert batch[-1].volume == batch.volume[49]
+    matrices = matrices_of(poses)
+    assert query.run_batch(scene, matrices).volume == pytest.approx(batch.volume, abs=1e-12)
+    assert np.array_equal(query.run_batch(scene, matrices[:, :3]).volume, query.run_batch(scene, matrices).volume)
+    assert np.array_equal(query.run_batch(scene, np.asfortranarray(poses)).volume, batch.volume)
+    assert query.run(scene, list(poses[25])).volume == batch.volume[25]
+
+
+def test_arrays_of_results_share_their_memory_and_outlive_the_object(tool, scene):
+    batch = vpm.Query(tool).run_batch(scene, poses_into_the_wall(20))
+    force = batch.force
+    assert np.shares_memory(force, batch.force) and not force.flags.writeable
+    expected = force.copy()
+    del batch
+    assert np.array_equal(force, expected)
+    empty = vpm.Query(tool).run_batch(scene, np.zeros((0, 7)))
+    assert len(empty) == 0 and empty.force.shape == (0, 3)
+
+
+def test_jobs_name_their_tools(tool, scene):
+    other = vpm.make_tool((2 * CUBE, FACES), spheres=60)
+    poses = poses_into_the_wall(6)
+    which = [0, 1, 1, 0, 1, 0]
+    batch = vpm.Query([tool, other]).run_batch(scene, poses, which)
+    for k, t in enumerate(which):
+        assert batch[k].volume == vpm.Query([tool, other][t]).run(scene, poses[k]).volume
+    with pytest.raises(vpm.ArgumentError):
+        vpm.Query([tool, other]).run_batch(scene, poses, [0, 1, 2, 0, 0, 0])
+    with pytest.raises(vpm.ArgumentError):
+        vpm.Query([tool, other]).run_batch(scene, poses, [0, 1])
+
+
+@pytest.mark.parametrize("pose", [[0, 0, 1], np.zeros(7), np.zeros((4, 4)), np.eye(4).T * 2, np.full(7, np.nan),
+                                  [[0, 0, 1, 0, 0, 0, 1]], np.eye(5), "pose"])
+def test_what_is_no_pose_is_refused(tool, scene, pose):
+    with pytest.raises((vpm.Error, ValueError, TypeError)):
+        vpm.Query(tool).run(scene, pose)
+
+
+def test_errors_tell_what_where_and_how(tmp_path):
+    path = tmp_path / "none.vpmg"
+    path.write_bytes(b"something else")
+    with pytest.raises(vpm.RefusedError) as caught:
+        vpm.Tool.read(path)
+    assert str(path) in caught.value.where and caught.value.problem and str(caught.value).startswith(caught.value.where)
+    assert isinstance(caught.value, vpm.Error) and isinstance(caught.value, ValueError)
+    with pytest.raises(vpm.RefusedError):
+        vpm.solid_of((CUBE, FACES[:-1]))
+    with pytest.raises(vpm.ArgumentError, match="refined.*paper"):
+        vpm.Query(vpm.make_tool((CUBE, FACES), spheres=5), measure="exact")
+    with pytest.raises(TypeError):
+        vpm.import_cloud("x.png", depthscale=1000)
+    with pytest.raises(vpm.ArgumentError):
+        vpm.SolidMesh.from_triangles(CUBE, FACES - 1)
+    with pytest.raises(vpm.ArgumentError):
+        vpm.SolidMesh.from_triangles(CUBE, FACES.astype(float))
+
+
+def test_files_come_back_with_their_bytes(tmp_path, tool, cloud):
+    for name, made, kind in (("a.vpmg", tool, vpm.Tool), ("a.vpmc", cloud, vpm.PointCloud)):
+        made.write(tmp_path / name)
+        kind.read(tmp_path / name).write(str(tmp_path / ("b" + name)))
+        assert (tmp_path / name).read_bytes() == (tmp_path / ("b" + name)).read_bytes()
+
+
+def test_meshes_of_other_libraries_are_taken(tool):
+    mesh = types.SimpleNamespace(vertices=CUBE.astype(np.float32).astype(float), faces=FACES.astype(np.int32))
+    assert vpm.solid_of(mesh).triangles == 12
+    assert vpm.make_tool(mesh, spheres=120).spheres.shape == (120, 4)
+    assert tool.spheres[0] == pytest.approx([0, 0, 0, 0.1], abs=1e-6)
+
+
+def test_depth_images_of_counts_and_metres_are_the_same(tool):
+    counts = np.full((60, 60), 1000, np.uint16)
+    counts[20:30, 10:50] = 1100
+    by_counts = vpm.import_depth(counts, intrinsics=K)
+    by_metres = vpm.import_depth(counts.astype(np.float32) / np.float32(1000), intrinsics=np.array(
+        [[60, 0, 29.5], [0, 60, 29.5], [0, 0, 1.0]]))
+    pose = [0, 0, 1.05, 0, 0, 0, 1]
+    query = vpm.Query(tool)
+    assert query.run(vpm.Scene(by_counts), pose).volume == query.run(vpm.Scene(by_metres), pose).volume
+
+
+def test_improbable_data_warn_where_they_are_given():
+    with pytest.warns(vpm.SetupWarning, match="depth_scale") as caught:
+        vpm.import_depth(np.full((60, 60), 1000, np.float32), intrinsics=K)
+    assert caught[0].filename == __file__
+
+
+def test_good_data_warn_of_nothing(recwarn, caplog):
+    with caplog.at_level(logging.INFO, logger="vpm"):
+        vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K)
+    assert not recwarn.list and not caplog.records
+
+
+def test_a_stream_gives_what_an_image_gives(tool, cloud):
+    stream = vpm.DepthStream(K, 60, 60, counts_per_metre=1000)
+    stream.image()[:] = 1000
+    body = stream.prepare(np.eye(4))
+    pose = [0, 0, 1.02, 0, 0, 0, 1]
+    query = vpm.Query(tool)
+    assert query.run(vpm.Scene(body), pose).volume == query.run(vpm.Scene(cloud), pose).volume
+    assert query.run(vpm.Scene([body, vpm.Body(cloud)]), pose).volume == pytest.approx(
+        2 * query.run(vpm.Scene(body), pose).volume, rel=1e-12)
+
+
+def test_threads_share_a_query(tool, scene):
+    poses = poses_into_the_wall(40)
+    query = vpm.Query(tool)
+    expected = query.run_batch(scene, poses).volume.copy()
+    wrong = []
+
+    def ask():
+        for k in range(40):
+            if query.run(scene, poses[k]).volume != expected[k]:
+                wrong.append(k)
+
+    threads = [threading.Thread(target=ask) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_what_progress_raises_ends_the_work():
+    class Stop(Exception):
+        pass
+
+    def stop(fraction):
+        assert 0 <= fraction <= 1
+        raise Stop
+
+    with pytest.raises(Stop):
+        vpm.pack(vpm.solid_of((CUBE, FACES)), spheres=500, progress=stop)
+
+
+def test_setups_that_are_wrong_are_said(tool, cloud, scene):
+    check = vpm.SetupCheck(tool, cloud)
+    poses = poses_into_the_wall(20)
+    check.see(poses, vpm.Query(tool).run_batch(scene, poses))
+    assert check.remarks() == []
+    far = poses * [1000, 1000, 1000, 1, 1, 1, 1]
+    wrong = vpm.SetupCheck(tool, cloud)
+    wrong.see(far, vpm.Query(tool).run_batch(scene, far))
+    assert [remark.is_warning for remark in wrong.remarks()] == [True]
+
+
+def test_a_coupling_holds_the_tool(tool):
+    coupling = vpm.VirtualCoupling(tool.center_of_mass, np.eye(4), stiffness=500, damping=5,
+                                   mass=vpm.critical_mass(500, 5), gyration=tool.gyration)
+    hand = np.eye(4)
+    hand[0, 3] = 0.01
+    for _ in range(2000):
+        force, torque = coupling.advance(hand, [0, 0, -1.0], [0, 0, 0])
+    assert coupling.tool[:3, 3] == pytest.approx([0.01, 0, -1 / 500], abs=1e-6)
+    assert force == pytest.approx([0, 0, -1], abs=1e-3) and torque == pytest.approx([0, 0, 0], abs=1e-9)
+    energy = coupling.energy()
+    assert energy["supplied"] == pytest.approx(sum(energy[name] for name in ("stored", "dissipated", "absorbed", "lost")))
+
+
+def names_of_stub():
+    """Returns the names of the type stubs: functions, classes, and {class: members}."""
+    tree = ast.parse((pathlib.Path(vpm.__file__).parent / "__init__.pyi").read_text())
+    names = {}
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef):
+            names[node.name] = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+        elif isinstance(node, ast.FunctionDef):
+            names[node.name] = None
+    return names
+
+
+def test_stubs_name_what_the_module_has():
+    stub = names_of_stub()
+    assert set(stub) == set(vpm.__all__)
+    for name, members in stub.items():
+        if not members:
+            continue
+        has = {member for member in vars(getattr(vpm, name)) if not member.startswith("_")}
+        assert has == {member for member in members if not member.startswith("_")}, name
+
+
+def test_stubs_have_the_parameters_of_the_functions():
+    tree = ast.parse((pathlib.Path(vpm.__file__).parent / "__init__.pyi").read_text())
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and inspect.isfunction(getattr(vpm, node.name)):
+            told = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
+            has = [name for name, parameter in inspect.signature(getattr(vpm, node.name)).parameters.items()
+                   if parameter.kind != inspect.Parameter.VAR_KEYWORD]
+            assert told == has, node.name
+
+
+@pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy is not installed")
+def test_mypy_finds_no_fault_in_the_stubs():
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "vpm", "--ignore-missing-stub"], capture_output=True,
+                          text=True, env=dict(os.environ))
+    assert done.returncode == 0, done.stdout
+
+
+def test_everything_has_its_help():
+    for name in vpm.__all__:
+        documented = getattr(vpm, name)
+        assert inspect.getdoc(documented), name
+        if inspect.isclass(documented) and not issubclass(documented, Exception):
+            assert documented.__module__ == "vpm"
+            for member, value in vars(documented).items():
+                if not member.startswith("_"):
+                    assert inspect.getdoc(value), f"{name}.{member}"
