@@ -7,6 +7,9 @@
 // Backends choose where directions are searched for, and in which order.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "libvpm/measure/classify.h"
 #include "libvpm/measure/flood_rules.h"
 #include "libvpm/measure/tool_piece.h"
@@ -17,6 +20,7 @@ struct CellResult {
   ToolSum sum;                     // tool axes, arms about the centre of mass
   ContactPlane plane;              // plane.count > 0: the surface cuts the cell
   bool is_far = false;             // a piece needs the support of a plane (is_far_behind)
+  std::uint32_t far_count = 0;     // such pieces that run() has listed
   std::uint32_t point = kNoPoint;  // disk sampled last, where the next search begins
 };
 
@@ -30,6 +34,24 @@ VPM_HD inline CellClass class_of_result(const CellResult& result) {
          : counts(result.sum) || result.is_far ? CellClass::partial
                                                : CellClass::free;
 }
+
+// Names the samples [begin, end) of a level.
+struct SampleRange {
+  const CellSample* all = nullptr;
+  std::uint32_t begin = 0, end = 0;
+};
+
+// Names a piece of a cell: a sample, or a block that is measured as one piece.
+struct PieceIndex {
+  static constexpr std::uint32_t kIsBlock = 1U << 31;  // no level has so many samples
+
+  std::uint32_t bits = 0;
+
+  static PieceIndex sample(std::uint32_t k) { return {k}; }
+  static PieceIndex block(std::uint32_t b) { return {b | kIsBlock}; }
+  bool is_block() const { return (bits & kIsBlock) != 0; }
+  std::uint32_t index() const { return bits & ~kIsBlock; }
+};
 
 // Adds a mass wholly behind the surface, pushed along a normal in the tool's axes.
 VPM_HD inline void add_whole(const ToolRadius& tool, const BlockMass& mass, Vec3 normal,
@@ -75,66 +97,41 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  // Returns the part of an ambiguous cell that is inside. Far pieces of a cell that turns out uncut
-  // are left to add_far(). `samples` is SamplesInTurn or adds the same faster. Searches start at
-  // `point`.
+  // Returns the part of an ambiguous cell that is inside. Lists far pieces in `far`, which has room
+  // for all samples and blocks of the cell, and adds them where the cell turns out to be cut;
+  // otherwise that is left to add_far(). `samples` is SamplesInTurn or adds the same faster.
+  // Searches start at `point`.
   template <class Samples>
-  VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
+  CellResult run(Samples&& samples, PieceIndex* far, std::uint32_t point = kNoPoint) const {
     CellResult result;
     result.point = point;
-    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, result);
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, far, result);
     samples.flush(*this, result);
     if (result.is_far && result.plane.count > 0) {
       const CutCell own{result.plane, center_, cell_.reach};
-      add_far([&](Vec3 x, Vec3 foot) { return own.supports(x, foot, tool_radius_.length); },
-              result.sum);
+      const auto supports = [&](Vec3 x, Vec3 foot) {
+        return own.supports(x, foot, tool_radius_.length);
+      };
+      samples.add_far(*this, {far, result.far_count}, supports, result.sum);
     }
     return result;
   }
 
-  // Adds the far pieces that run() leaves out. `supports(x, foot)` is true if the plane of a cut
+  // Adds the far pieces that run() has listed. `supports(x, foot)` is true if the plane of a cut
   // cell supports a place x behind the surface's place `foot`: a surface further away than the
   // tool's radius may be another one than that which cuts the tool.
   template <class Supports>
-  VPM_HD void add_far(const Supports& supports, ToolSum& sum) const {
-    const auto add_if_far = [&](const ToolPiece& piece) {
+  void add_far(std::span<const PieceIndex> pieces, const Supports& supports, ToolSum& sum) const {
+    for (const PieceIndex& far : pieces) {
+      const ToolPiece piece = piece_of_far(far);
       const PieceSample sampled = sample_piece(piece);
-      if (sampled.is_far && supports(sampled.x, sampled.on_surface.foot))
+      if (supports(sampled.x, sampled.on_surface.foot))
         push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
-    };
-    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
-      const CellBlock& block = cell_.blocks[b];
-      const ClassifiedBlock sampled = classify_block(block);
-      if (sampled.found == BlockClass::free || sampled.found == BlockClass::cut) continue;
-      if (sampled.found == BlockClass::uncut) {
-        add_if_far(piece_of(cell_.masses[b], block));
-        continue;
-      }
-      for (std::uint32_t s = block.begin; s < block.end; ++s)
-        add_if_far(piece_of(cell_.samples[s]));
     }
   }
-  // Returns the part of a cell wholly behind the surface that is inside. `mass` is the cell's.
-  template <class Supports>
-  VPM_HD ToolSum whole(const Supports& supports, const BlockMass& mass) const {
-    ToolSum sum;
-    const bool compact = is_compact(cell_.reach, tool_radius_.length);
-    if (whole_part(compact, true, false) == WholePart::cell) {
-      add_whole_piece(supports, piece_of(mass, cell_), sum);
-      return sum;
-    }
-    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
-      if (whole_part(compact, b == cell_.begin, true) == WholePart::block)
-        add_whole_piece(supports, piece_of(cell_.masses[b], cell_.blocks[b]), sum);
-    }
-    return sum;
-  }
-  template <class Supports>
-  VPM_HD void add_whole_piece(const Supports& supports, const ToolPiece& piece,
-                              ToolSum& sum) const {
-    const PieceSample sampled = sample_piece(piece);
-    if (sampled.is_inside && (!sampled.is_far || supports(sampled.x, sampled.on_surface.foot)))
-      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
+  ToolPiece piece_of_far(const PieceIndex& far) const {
+    const std::uint32_t k = far.index();
+    return far.is_block() ? piece_of(cell_.masses[k], cell_.blocks[k]) : piece_of(cell_.samples[k]);
   }
 
   // Holds the class of one block of the cell.
@@ -157,18 +154,18 @@ class CellMeasure {
 
   // Adds what one block contributes to run().
   template <class Samples>
-  VPM_HD void add_block(std::uint32_t b, Samples& samples, CellResult& result) const {
+  void add_block(std::uint32_t b, Samples& samples, PieceIndex* far, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const ClassifiedBlock sampled = classify_block(block);
     if (sampled.found == BlockClass::free) return;
     if (sampled.point != kNoPoint) result.point = sampled.point;
     if (sampled.found == BlockClass::uncut) {
-      add_piece(piece_of(cell_.masses[b], block), result);
+      add_piece(piece_of(cell_.masses[b], block), PieceIndex::block(b), far, result);
     } else if (sampled.found == BlockClass::cut) {
       add_block(b, {sampled.plane, to_surface_}, Samples::clipped, result);
     } else {
       const auto& near = surface_.around_ball(sampled.center, block.radius, sampled.point);
-      samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
+      samples.add(*this, {cell_.samples, block.begin, block.end}, near, far, result);
     }
   }
 
@@ -263,11 +260,18 @@ class CellMeasure {
     if (is_cut(piece, sampled)) add_to_plane(sampled, result.plane);
     return !sampled.is_far;
   }
+  // Does so in run(), which lists far pieces.
+  bool note(const ToolPiece& piece, const PieceSample& sampled, PieceIndex name, PieceIndex* far,
+            CellResult& result) const {
+    if (sampled.is_far) far[result.far_count++] = name;
+    return note(piece, sampled, result);
+  }
   // Adds one piece to run()'s result.
-  VPM_HD void add_piece(const ToolPiece& piece, CellResult& result) const {
+  void add_piece(const ToolPiece& piece, PieceIndex name, PieceIndex* far,
+                 CellResult& result) const {
     const PieceSample sampled = sample_piece(piece, result.point);
     result.point = sampled.on_surface.point;
-    if (note(piece, sampled, result))
+    if (note(piece, sampled, name, far, result))
       push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_,
            result.sum);
   }
@@ -276,16 +280,18 @@ class CellMeasure {
     std::uint32_t neighbors = UINT32_MAX;  // neighbors_of() its samples
     Vec3 normal;
   };
+  // Adds sample `k`, the `place`-th of its block.
   template <class Near>
-  VPM_HD void add_sample(std::uint32_t k, const ToolPiece& piece, SharedDirection& shared,
-                         CellResult& result, const Near& near) const {
+  void add_sample(std::uint32_t k, std::uint32_t place, SharedDirection& shared, PieceIndex* far,
+                  CellResult& result, const Near& near) const {
+    const ToolPiece piece = piece_of(cell_.samples[k]);
     const Vec3 x = to_surface_ * piece.at;
     const PieceSample sampled = sample_of(piece, x, near.sample(x, result.point));
     result.point = sampled.on_surface.point;
-    if (!note(piece, sampled, result)) return;
+    if (!note(piece, sampled, PieceIndex::sample(k), far, result)) return;
     const WayOut way = way_out(piece, sampled, true);
-    if (way == WayOut::shared && shared.neighbors != neighbors_of(k))
-      shared = {neighbors_of(k), closest_normal(sampled)};
+    if (way == WayOut::shared && shared.neighbors != neighbors_of(place))
+      shared = {neighbors_of(place), closest_normal(sampled)};
     push(piece, sampled, way == WayOut::shared ? shared.normal : own_normal(way, sampled), near,
          result.sum);
   }
@@ -327,17 +333,22 @@ class CellMeasure {
   Vec3 center_;  // in the surface's frame
 };
 
-// Adds the samples of ambiguous blocks one after another.
+// Adds the samples of ambiguous blocks, and far pieces, one after another.
 struct SamplesInTurn {
   template <class Measure, class Near>
-  VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
-                  const Near& near, CellResult& result) const {
+  void add(const Measure& measure, const SampleRange& range, const Near& near, PieceIndex* far,
+           CellResult& result) const {
     typename Measure::SharedDirection shared;
-    for (std::uint32_t k = 0; k < count; ++k)
-      measure.add_sample(k, piece_of(samples[k]), shared, result, near);
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      measure.add_sample(k, k - range.begin, shared, far, result, near);
   }
   template <class Measure>
-  VPM_HD void flush(const Measure&, CellResult&) const {}
+  void flush(const Measure&, CellResult&) const {}
+  template <class Measure, class Supports>
+  static void add_far(const Measure& measure, std::span<const PieceIndex> pieces,
+                      const Supports& supports, ToolSum& sum) {
+    measure.add_far(pieces, supports, sum);
+  }
   static VPM_HD ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
                                        std::uint32_t count) {
     return clipped_in_turn(plane, samples, count);

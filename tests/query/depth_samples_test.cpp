@@ -178,12 +178,31 @@ void expect_same(const CellResult& a, const CellResult& b) {
   }
   EXPECT_EQ(a.plane.count, b.plane.count);
   EXPECT_EQ(a.is_far, b.is_far);
+  EXPECT_EQ(a.far_count, b.far_count);
+}
+
+// Expects the same lists of far pieces, and the same sum of those on one side of the tool, taken
+// one after the other and together.
+void expect_same_far_pieces(const CellMeasure<DepthSurface>& measure,
+                            std::span<const PieceIndex> in_turn,
+                            std::span<const PieceIndex> together) {
+  ASSERT_EQ(in_turn.size(), together.size());
+  for (std::size_t k = 0; k < in_turn.size(); ++k) EXPECT_EQ(in_turn[k].bits, together[k].bits);
+  const auto supports = [&](Vec3 x, Vec3 foot) {
+    return x.x > measure.to_surface().translation.x && foot.z > 0;
+  };
+  ToolSum sum, of_together;
+  measure.add_far(in_turn, supports, sum);
+  SamplesTogether::add_far(measure, together, supports, of_together);
+  EXPECT_EQ(sum, of_together);
 }
 
 TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 5);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
+  std::vector<PieceIndex> far_pieces(level.samples.size() + level.blocks.size()),
+      of_together = far_pieces;
   int cut = 0, pushed = 0, far = 0;  // samples of blocks that are neither flat nor on one side
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
@@ -194,7 +213,10 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
           surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
                    level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_radius[i]});
-      expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
+      const CellResult result = measure.run(SamplesInTurn{}, far_pieces.data());
+      expect_same(result, measure.run(SamplesTogether{}, of_together.data()));
+      expect_same_far_pieces(measure, {far_pieces.data(), result.far_count},
+                             {of_together.data(), result.far_count});
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;
@@ -221,6 +243,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 4);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
+  std::vector<PieceIndex> far(level.samples.size() + level.blocks.size());
   double volume = 0;
   Vec3 together, alone;
   for (int k = 0; k < 300; ++k) {
@@ -246,7 +269,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
                      of_each.sum);
       }
       if (any_far) continue;
-      const CellResult result = measure.run(SamplesTogether{});
+      const CellResult result = measure.run(SamplesTogether{}, far.data());
       ASSERT_EQ(result.sum.volume.value, of_each.sum.volume.value);
       volume += result.sum.volume.real();
       together += force_of(result.sum);

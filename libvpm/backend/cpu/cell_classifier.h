@@ -2,6 +2,8 @@
 // cells, since the class of a ball holds for all balls in it.
 #pragma once
 
+#include <span>
+
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/core/parallel.h"
@@ -16,6 +18,10 @@ class CellClassifier {
   void run(ParallelRegion& region) {
     region.loop(work_.level.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) classify_group(static_cast<std::uint32_t>(g));
+    });
+    work_.list_uniform();
+    region.loop(work_.states.uniform.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+      push(std::span(work_.states.uniform).subspan(begin, end - begin));
     });
   }
 
@@ -61,9 +67,20 @@ class CellClassifier {
       return classify_clipped(root, in_ball);
     }
     if (found == ClusterClass::uniform)
-      work_.push(whole, root, work_.surface.sample(center));
+      work_.states.set_uniform(whole);
     else
       work_.states.set(whole, found);
+  }
+
+  // Finds the directions of uniform clusters, kAtOnce at most, together.
+  void push(std::span<const std::uint32_t> roots) {
+    Vec3 centers[kAtOnce], normals[kAtOnce];
+    PlaceSample middles[kAtOnce];
+    for (std::size_t k = 0; k < roots.size(); ++k)
+      centers[k] = work_.to_surface * work_.level.cluster(roots[k]).center;
+    sample_places(work_.surface, {centers, roots.size()}, middles);
+    find_normals(work_.surface, {middles, roots.size()}, normals);
+    for (std::size_t k = 0; k < roots.size(); ++k) work_.set_direction(roots[k], normals[k]);
   }
 
   // Classifies the cells of a cluster that the surface cuts otherwise than as one plane.
@@ -96,7 +113,8 @@ class CellClassifier {
     const BallClass in_ball = work_.surface.classify_ball(center, view.reach);
     const Side side = side_of(work_.surface, in_ball, center, view.reach);
     if (side != Side::ambiguous) return work_.states.set(i, side);
-    work_.states.results[i] = work_.measure_of(view).run(samples, in_ball.point);
+    work_.states.results[i] = work_.measure_of(view).run(
+        samples, work_.states.far.data() + work_.level.first_piece(i), in_ball.point);
     take_result(i, FloodState::unknown);
   }
 

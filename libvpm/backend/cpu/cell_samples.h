@@ -61,6 +61,96 @@ struct SampleTogether : SampleInTurn {
   }
 };
 
+// Most places that are sampled, or ways out that are searched for, together.
+inline constexpr std::uint32_t kAtOnce = 16;
+
+// Samples a surface at places, kAtOnce at most, by vectors where it can be.
+template <class Surface>
+void sample_places(const Surface& surface, std::span<const Vec3> places, PlaceSample* at) {
+  if constexpr (SamplesFour<Surface>) {
+    const std::size_t last = places.size() - 1;
+    for (std::size_t k = 0; k < places.size(); k += 4) {
+      const Vec3 four[] = {places[k], places[std::min(k + 1, last)], places[std::min(k + 2, last)],
+                           places[std::min(k + 3, last)]};
+      SurfaceSample on_surface_at[4];
+      sample_four(surface, four, on_surface_at);
+      for (std::size_t lane = 0; lane < 4 && k + lane <= last; ++lane)
+        at[k + lane] = {four[lane], on_surface_at[lane]};
+    }
+  } else {
+    for (const Vec3& x : places) *at++ = {x, surface.sample(x)};
+  }
+}
+// Writes closest_normal() of each sampled place, by vectors where it can be.
+template <class Surface>
+void find_normals(const Surface& surface, std::span<const PlaceSample> places, Vec3* normals) {
+  if constexpr (SamplesFour<Surface>) {
+    closest_normals(surface, places, normals);
+  } else {
+    for (const auto& [x, on_surface] : places) *normals++ = surface.closest_normal(x, on_surface);
+  }
+}
+
+// Measures pieces that share no direction, several together. Surface is that of `measure`.
+template <class Surface>
+class PiecesTogether {
+ public:
+  using Measure = CellMeasure<Surface>;
+  using PieceSample = typename Measure::PieceSample;
+
+  // Adds a piece; push() must have emptied what is full.
+  void add(const ToolPiece& piece) { pieces_[count_++] = piece; }
+  bool is_full() const { return count_ == kAtOnce; }
+
+  // Samples the pieces that were added, in order, and pushes those for which takes(k, sampled) is
+  // true. Calls take(k, sum) for these. Empties the list.
+  template <class Takes, class Take>
+  void push(const Measure& measure, const Takes& takes, const Take& take) {
+    if (count_ == 0) return;
+    Vec3 places[kAtOnce], normals[kAtOnce];
+    for (std::uint32_t k = 0; k < count_; ++k) places[k] = measure.to_surface() * pieces_[k].at;
+    PlaceSample at[kAtOnce], searched[kAtOnce];
+    sample_places(measure.surface(), {places, count_}, at);
+    std::uint32_t taken[kAtOnce], found = 0;
+    for (std::uint32_t k = 0; k < count_; ++k) {
+      if (!takes(k, measure.sample_of(pieces_[k], at[k].x, at[k].on_surface))) continue;
+      taken[found] = k;
+      searched[found++] = at[k];
+    }
+    find_normals(measure.surface(), {searched, found}, normals);
+    for (std::uint32_t f = 0; f < found; ++f) {
+      const ToolPiece& piece = pieces_[taken[f]];
+      ToolSum sum;
+      measure.push(piece, measure.sample_of(piece, searched[f].x, searched[f].on_surface),
+                   normals[f], measure.surface(), sum);
+      take(taken[f], sum);
+    }
+    count_ = 0;
+  }
+
+ private:
+  ToolPiece pieces_[kAtOnce];
+  std::uint32_t count_ = 0;
+};
+
+// Does what CellMeasure::add_far() does, several pieces together.
+template <class Surface, class Supports>
+void add_far_together(const CellMeasure<Surface>& measure, std::span<const PieceIndex> pieces,
+                      const Supports& supports, ToolSum& sum) {
+  PiecesTogether<Surface> together;
+  const auto push = [&] {
+    together.push(
+        measure,
+        [&](std::uint32_t, const auto& far) { return supports(far.x, far.on_surface.foot); },
+        [&](std::uint32_t, const ToolSum& part) { sum.add(part); });
+  };
+  for (const PieceIndex& far : pieces) {
+    together.add(measure.piece_of_far(far));
+    if (together.is_full()) push();
+  }
+  push();
+}
+
 // Adds samples one by one, for surfaces that vectors cannot sample.
 struct SamplesOneByOne : SamplesInTurn {
   static constexpr auto* clipped = clipped_moments;
@@ -72,15 +162,16 @@ class SamplesTogether {
   static constexpr auto* clipped = clipped_moments;
 
   template <class Measure>
-  void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
-           const DepthSurface& surface, CellResult& result) {
+  void add(const Measure& measure, const SampleRange& range, const DepthSurface& surface,
+           PieceIndex* far, CellResult& result) {
     neighbors_ = kNone;  // a new block begins
-    for (std::uint32_t first = 0; first < count; first += kAtOnce) {
-      const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
+    for (std::uint32_t first = range.begin; first < range.end; first += kAtOnce) {
+      const std::uint32_t some = std::min(range.end - first, kAtOnce);
       const std::uint32_t found =
-          sample_surface(surface, measure.to_surface(), {samples + first, some}, on_surface_at_);
+          sample_surface(surface, measure.to_surface(), {range.all + first, some}, on_surface_at_);
       for (std::uint32_t k = 0; k < found; ++k)
-        add_one(measure, samples, first + on_surface_at_[k].sample, on_surface_at_[k].at, result);
+        add_one(measure, range, first + on_surface_at_[k].sample, on_surface_at_[k].at, far,
+                result);
     }
   }
   // Finds the directions that were put off, together, and adds their samples.
@@ -96,25 +187,29 @@ class SamplesTogether {
     direction_count_ = pushed_count_ = 0;
   }
 
- private:
-  static constexpr std::uint32_t kAtOnce = 16;
+  template <class Measure, class Supports>
+  static void add_far(const Measure& measure, std::span<const PieceIndex> pieces,
+                      const Supports& supports, ToolSum& sum) {
+    add_far_together(measure, pieces, supports, sum);
+  }
 
+ private:
   template <class Measure>
-  void add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
-               const PlaceSample& at, CellResult& result) {
-    const ToolPiece piece = piece_of(samples[k]);
+  void add_one(const Measure& measure, const SampleRange& range, std::uint32_t k,
+               const PlaceSample& at, PieceIndex* far, CellResult& result) {
+    const ToolPiece piece = piece_of(range.all[k]);
     const typename Measure::PieceSample sampled = measure.sample_of(piece, at.x, at.on_surface);
-    if (!measure.note(piece, sampled, result)) return;
+    if (!measure.note(piece, sampled, PieceIndex::sample(k), far, result)) return;
     if (Measure::way_out(piece, sampled, true) != WayOut::shared) {
       measure.push(piece, sampled, {}, measure.surface(), result.sum);
       return;
     }
-    if (neighbors_ != neighbors_of(k)) {
-      neighbors_ = neighbors_of(k);
+    if (neighbors_ != neighbors_of(k - range.begin)) {
+      neighbors_ = neighbors_of(k - range.begin);
       if (direction_count_ == kAtOnce) flush(measure, result);
       searched_[direction_count_++] = at;
     }
-    pushed_[pushed_count_++] = {samples + k, direction_count_ - 1};
+    pushed_[pushed_count_++] = {range.all + k, direction_count_ - 1};
   }
 
   static constexpr std::uint32_t kNone = UINT32_MAX;

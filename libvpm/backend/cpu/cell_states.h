@@ -69,10 +69,12 @@ struct CellStates {
         flood_states(level.size()),
         results(level.size()),
         squared_gaps(level.size()),
+        far(level.most_pieces()),
         planes(level.roots().size()),
         parts(1) {
     cut.reserve(level.size());
     cut_clusters.reserve(level.roots().size());
+    uniform.reserve(level.roots().size());
     parts[0].front.reserve(level.size());
   }
 
@@ -86,6 +88,15 @@ struct CellStates {
               flood_state);
   }
 
+  void set_uniform(const CellCluster& cluster) {
+    set(cluster, CellClass::uniform, flood_state_of(ClusterClass::uniform));
+  }
+  // True if a row is in a cluster for which set_uniform() was called last: cells of a cut cluster
+  // are in another flood state.
+  bool is_uniform(std::uint32_t row) const {
+    return cells[row] == CellClass::uniform &&
+           flood_states[row] == flood_state_of(ClusterClass::uniform);
+  }
   // Notes the class of a cluster, or of a part of one, that is neither ambiguous nor planar.
   void set(const CellCluster& cluster, ClusterClass found) {
     set(cluster, class_on_side(side_of_cells(found)), flood_state_of(found));
@@ -106,9 +117,11 @@ struct CellStates {
   std::vector<FloodState> flood_states;
   std::vector<CellResult> results;   // valid for cut and partial cells
   std::vector<double> squared_gaps;  // gap of the centre, valid where asked, m^2
+  std::vector<PieceIndex> far;       // far pieces, from SpatialLevel::first_piece() of each cell on
   // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
-  std::vector<std::uint32_t> cut;  // rows of cut cells, ascending
+  std::vector<std::uint32_t> uniform;  // roots of clusters to be pushed along one normal
+  std::vector<std::uint32_t> cut;      // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
   std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
   // Keeps as many parts as were ever used; the first `part_count` are in use.
@@ -133,9 +146,18 @@ struct PoseWork {
   // Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
   // sample at its centre.
   void push(const CellCluster& cluster, std::uint32_t root, const SurfaceSample& middle) const {
-    states.set(cluster, CellClass::uniform, flood_state_of(ClusterClass::uniform));
-    states.planes[root].normal = transpose(to_surface.rotation) *
-                                 surface.closest_normal(to_surface * cluster.center, middle);
+    states.set_uniform(cluster);
+    set_direction(root, surface.closest_normal(to_surface * cluster.center, middle));
+  }
+  // Sets the direction, surface frame, along which a uniform cluster is pushed.
+  void set_direction(std::uint32_t root, Vec3 normal) const {
+    states.planes[root].normal = transpose(to_surface.rotation) * normal;
+  }
+  // Lists the clusters that the classifier has found uniform.
+  void list_uniform() const {
+    states.uniform.clear();
+    for (std::uint32_t root = 0; root < level.roots().size(); ++root)
+      if (states.is_uniform(level.cluster(root).begin)) states.uniform.push_back(root);
   }
 };
 

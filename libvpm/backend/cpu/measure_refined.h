@@ -13,6 +13,7 @@
 #include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
+#include "libvpm/backend/cpu/whole_cells.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/scene/any_body.h"
@@ -98,9 +99,12 @@ class RefinedMeasure {
   std::uint32_t add_up(const PoseWork<Surface>& work, const InsideOf<Surface>& inside,
                        std::uint32_t begin, std::uint32_t end, ToolSum& sum) {
     std::uint32_t last_cut = kNoRow, count = 0;
+    WholeCells whole(work, inside, sum);
     for_rows_in(CellClass::cut, cells_.cells, begin, end,
                 [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
     for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
+      if (cells_.cells[i] != CellClass::uniform && cells_.cells[i] != CellClass::partial)
+        return whole.add(i);
       const ToolSum part = sum_of(work, inside, i, last_cut);
       sum.add(part);
       if (counts(part))
@@ -108,9 +112,10 @@ class RefinedMeasure {
       else
         cells_.cells[i] = CellClass::free;  // hidden, not inside
     });
-    return count;
+    return count + whole.finish();
   }
 
+  // Returns the sum of a uniform or partial cell.
   template <class Surface>
   ToolSum sum_of(const PoseWork<Surface>& work, const InsideOf<Surface>& inside, std::uint32_t row,
                  std::uint32_t& last_cut) const {
@@ -119,18 +124,13 @@ class RefinedMeasure {
       add_whole(tool_radius_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
       return sum;
     }
-    const bool partial = cells_.cells[row] == CellClass::partial;
-    if (partial && !cells_.results[row].is_far) return cells_.results[row].sum;
-    const CellView view = level_.cell(row);
-    const CellMeasure measure = work.measure_of(view);
+    sum = cells_.results[row].sum;
+    if (!cells_.results[row].is_far) return sum;
+    const PieceIndex* const far = cells_.far.data() + level_.first_piece(row);
     auto support = inside.support(row, last_cut);
-    const auto supports = [&](Vec3 x, Vec3 foot) { return support(x, foot); };
-    if (partial) {
-      sum = cells_.results[row].sum;
-      measure.add_far(supports, sum);
-    } else {
-      sum = measure.whole(supports, level_.mass(row));
-    }
+    add_far_together(
+        work.measure_of(level_.cell(row)), {far, cells_.results[row].far_count},
+        [&](Vec3 x, Vec3 foot) { return support(x, foot); }, sum);
     return sum;
   }
 

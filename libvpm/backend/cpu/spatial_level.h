@@ -34,6 +34,13 @@ class SpatialLevel {
             row_cell.end,   row_cell.center,      row_cell.reach};
   }
   double reach(std::uint32_t row) const { return cells_[row].reach; }
+  // Return where a list of pieces (samples and blocks) of each row begins that has room for all of
+  // the row, and the length of all these lists.
+  std::size_t first_piece(std::uint32_t row) const {
+    const Cell& cell = cells_[row];
+    return cell.begin + (cell.begin < cell.end ? std::size_t{blocks_[cell.begin].begin} : 0);
+  }
+  std::size_t most_pieces() const { return samples_.size() + blocks_.size(); }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
   std::span<const std::uint32_t> neighbors(std::uint32_t row) const {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
