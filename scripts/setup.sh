@@ -72,6 +72,8 @@ configure() {
     options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")
     if [[ -z ${CXX:-} ]]; then options+=("-DCMAKE_CXX_FLAGS=${CXXFLAGS:-} -fpch-preprocess"); fi
   fi
+  # Where there is mold, it links: thirty programs of the tests take a second each otherwise.
+  if command -v mold >/dev/null; then options+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold -DCMAKE_SHARED_LINKER_FLAGS=-fuse-ld=mold); fi
   (cd "$repository" && cmake --preset release "${options[@]}")
 }
 
