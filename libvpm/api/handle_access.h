@@ -2,6 +2,7 @@
 // hold. Programs cannot do either.
 #pragma once
 
+#include <vpm/overlap.h>
 #include <vpm/scene.h>
 #include <vpm/solid.h>
 #include <vpm/tool.h>
@@ -29,6 +30,11 @@ struct HandleAccess {
   static const ToolModel& held(const Tool& tool) { return held_by(tool.model_, "Tool"); }
   static const CheckedSolid& held(const SolidMesh& mesh) {
     return held_by(mesh.solid_, "SolidMesh");
+  }
+  // Returns the surface that a body shares.
+  static const std::shared_ptr<const SolidSurface>& shared(const SolidBody& body) {
+    held_by(body.surface_, "SolidBody");
+    return body.surface_;
   }
   static const Packing& held(const SpherePacking& packing) {
     return held_by(packing.packing_, "SpherePacking");

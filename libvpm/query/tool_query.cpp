@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
-#include "libvpm/core/lengths.h"
+#include "libvpm/core/exact_pose.h"
 #include "libvpm/core/parallel.h"
 
 namespace vpm {
@@ -12,18 +12,6 @@ namespace {
 
 [[noreturn]] void invalid(const std::string& what, const std::string& hint = {}) {
   throw Error(ErrorKind::invalid_argument, what, {}, hint);
-}
-
-// Returns the pose with an exact rotation. Pruning relies on exact rotations and differs between
-// devices, so a rounded one would change bits.
-Pose exact_pose(const Pose& pose) {
-  if (!is_in_range(pose.translation))
-    refuse("the translation is not finite, or further than 2^100 m from the origin", "pose");
-  if (is_rotation(pose.rotation, kRotationExact)) return pose;
-  if (!is_rotation(pose.rotation, kRotationRounding))
-    refuse("its rotation is not finite, not orthonormal or mirrors", "pose",
-           "make it with rotation_from_matrix or rotation_from_quaternion");
-  return {exact_rotation(pose.rotation), pose.translation};
 }
 
 // Calls body(k) for each job in parallel, since a device waits for it.

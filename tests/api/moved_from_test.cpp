@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <vpm/depth_stream.h>
 #include <vpm/level_query.h>
+#include <vpm/overlap.h>
 #include <vpm/query.h>
 #include <vpm/setup_check.h>
 #include <vpm/solid.h>
@@ -101,6 +102,20 @@ TEST(MovedFrom, Tool) {
          vpm::Query(std::vector<vpm::Tool>{tool(), t});
        },
        [](auto& t) { vpm::LevelQuery(t, {}, {}, scene, kPose); }});
+}
+
+TEST(MovedFrom, SolidBody) {
+  expect_refused<vpm::SolidBody>(
+      vpm::SolidBody(tetrahedron(), false), "SolidBody",
+      {[](auto& b) { b.volume(); }, [](auto& b) { b.center_of_mass(); },
+       [](auto& b) { b.radius(); }, [](auto& b) { b.triangles(); },
+       [](auto& b) { vpm::overlap(b, {}, b, {}, {.with_force = false}); }});
+}
+
+TEST(MovedFrom, OverlapQuery) {
+  const vpm::SolidBody body(tetrahedron(), false);
+  expect_refused<vpm::OverlapQuery>(vpm::OverlapQuery(body, body, {.with_force = false}),
+                                    "OverlapQuery", {[](auto& q) { q.run({}, {}); }});
 }
 
 TEST(MovedFrom, SolidMesh) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "libvpm/synthetic/shapes.h"
 #include "tests/solid/pair_cases.h"
@@ -24,13 +26,15 @@ using test::surface;
 // the depth d below b's nearest face, by triangles no larger than `size`.
 std::pair<Vec3, Vec3> pushed_out_of(const Solid& a, const Solid& b, double size) {
   Vec3 force, torque;
+  std::vector<std::pair<Vec3, double>> planes;
+  for (const auto& [i, j, k] : b.triangles) {
+    const Vec3 p = b.vertices[i];
+    const Vec3 n = normalized_or_zero(cross(b.vertices[j] - p, b.vertices[k] - p));
+    planes.push_back({n, dot(n, p)});
+  }
   const auto depth = [&](Vec3 x) {
     double least = HUGE_VAL;
-    for (const auto& [i, j, k] : b.triangles) {
-      const Vec3 p = b.vertices[i];
-      const Vec3 n = normalized_or_zero(cross(b.vertices[j] - p, b.vertices[k] - p));
-      least = std::min(least, dot(n, p - x));
-    }
+    for (const auto& [n, offset] : planes) least = std::min(least, offset - dot(n, x));
     return std::max(least, 0.0);
   };
   const std::function<void(Vec3, Vec3, Vec3)> add = [&](Vec3 p, Vec3 q, Vec3 r) {

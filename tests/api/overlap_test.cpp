@@ -1,0 +1,110 @@
+// What two solids share, as programs ask it.
+
+#include <gtest/gtest.h>
+#include <vpm/overlap.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <vector>
+
+namespace {
+
+// Returns a closed box with its low corner at the origin.
+vpm::SolidMesh box(double x, double y, double z) {
+  std::vector<vpm::Vec3> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.push_back({(k & 1) != 0 ? x : 0, (k & 2) != 0 ? y : 0, (k & 4) != 0 ? z : 0});
+  const std::vector<std::array<std::uint32_t, 3>> triangles{
+      {0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return vpm::SolidMesh::from_triangles(corners, triangles, {.scale = 1});
+}
+
+vpm::ErrorKind kind_of(const auto& call) {
+  try {
+    call();
+  } catch (const vpm::Error& error) {
+    return error.kind();
+  }
+  ADD_FAILURE() << "nothing is thrown";
+  return {};
+}
+
+TEST(Overlap, IsToldInCubicMetresInTheWorldsFrame) {
+  const vpm::SolidBody a(box(.1, .1, .1)), b(box(.1, .2, .3));
+  EXPECT_NEAR(a.volume(), 1e-3, 1e-12);
+  EXPECT_NEAR(b.center_of_mass().z, .15, 1e-9);
+  EXPECT_NEAR(a.radius(), .05 * std::sqrt(3), 1e-9);
+  EXPECT_EQ(a.triangles(), 12U);
+  const vpm::Overlap o = vpm::overlap(a, {{}, {1, 2, 3}}, b, {{}, {1.08, 2.05, 3 - .15}});
+  EXPECT_NEAR(o.volume, .02 * .05 * .1, 1e-12);
+  EXPECT_NEAR(o.centroid.x, 1.09, 1e-9);
+  EXPECT_NEAR(o.centroid.y, 2.075, 1e-9);
+  EXPECT_NEAR(o.centroid.z, 3.05, 1e-9);
+  EXPECT_NEAR(o.area.x, .05 * .1, 1e-9);
+  EXPECT_LT(o.wrench.force.x, 0);  // a is pushed back, out of b
+  EXPECT_LE(o.closure, 1e-8);
+}
+
+TEST(Overlap, OfSolidsThatTouchIsNothing) {
+  const vpm::SolidBody a(box(.1, .1, .1));
+  EXPECT_NEAR(vpm::overlap(a, {}, a, {{}, {.1, 0, 0}}).volume, 0, 1e-12);
+  EXPECT_EQ(vpm::overlap(a, {}, a, {{}, {.3, 0, 0}}), vpm::Overlap{});
+}
+
+TEST(Overlap, OfSwappedSolidsHasTheOppositeWrenchInTheSameBits) {
+  const vpm::SolidBody a(box(.1, .1, .1)), b(box(.1, .2, .3));
+  const vpm::Rotation turn = vpm::rotation_from_quaternion({.1, .2, .3, std::sqrt(1 - .14)});
+  const vpm::Pose pose{turn, {.03, .02, .04}};
+  const vpm::Overlap there = vpm::overlap(a, pose, b, {}), back = vpm::overlap(b, {}, a, pose);
+  ASSERT_GT(there.volume, 0);
+  EXPECT_EQ(there.volume, back.volume);
+  EXPECT_EQ(there.centroid, back.centroid);
+  EXPECT_EQ(there.wrench.force.x, -back.wrench.force.x);
+  EXPECT_EQ(there.wrench.force.y, -back.wrench.force.y);
+  EXPECT_EQ(there.wrench.torque.z, -back.wrench.torque.z);
+}
+
+TEST(Overlap, StiffnessMakesNewtons) {
+  const vpm::SolidBody a(box(.1, .1, .1)), b(box(2, 2, 2));
+  const vpm::Pose pose{{}, {1, 1, 1.95}};
+  const vpm::Overlap o = vpm::overlap(a, pose, b, {}, {.stiffness = 0x1p20});
+  EXPECT_EQ(o.wrench.force.z, 0x1p20 * vpm::overlap(a, pose, b, {}).wrench.force.z);
+  EXPECT_NEAR(o.wrench.force.z, 0x1p20 * o.volume, 1e-4 * 0x1p20 * o.volume);
+}
+
+TEST(Overlap, RefusesWhatMeansNothing) {
+  const vpm::SolidBody a(box(.1, .1, .1)), bare(box(.1, .1, .1), false);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  using enum vpm::ErrorKind;
+  for (const double stiffness : {0.0, -1.0, kNan, HUGE_VAL})
+    EXPECT_EQ(kind_of([&] { vpm::overlap(a, {}, a, {}, {.stiffness = stiffness}); }),
+              invalid_argument);
+  EXPECT_EQ(kind_of([&] { vpm::overlap(a, {}, bare, {}); }), invalid_argument);
+  EXPECT_NEAR(vpm::overlap(a, {}, bare, {}, {.with_force = false}).volume, 1e-3, 1e-12);
+  EXPECT_EQ(kind_of([&] { vpm::overlap(a, {{}, {kNan, 0, 0}}, a, {}); }), refused);
+  EXPECT_EQ(kind_of([&] { vpm::overlap(a, {}, a, {{}, {1e300, 0, 0}}); }), refused);
+  const vpm::Rotation mirror{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  EXPECT_EQ(kind_of([&] { vpm::overlap(a, {mirror, {}}, a, {}); }), refused);
+}
+
+// Bodies are shared between threads, each with its own query.
+TEST(Overlap, OfSharedBodiesIsTheSameOnEachThread) {
+  const vpm::SolidBody a(box(.1, .1, .1)), b(box(.1, .2, .3));
+  const auto path = [&] {
+    vpm::OverlapQuery query(a, b);
+    std::vector<vpm::Overlap> found;
+    for (int k = 0; k < 20; ++k) found.push_back(query.run({{}, {.005 * k, .01, .02}}, {}));
+    return found;
+  };
+  const std::vector<vpm::Overlap> expected = path();
+  std::vector<std::vector<vpm::Overlap>> found(3);
+  std::vector<std::thread> threads;
+  for (auto& list : found) threads.emplace_back([&] { list = path(); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& list : found) EXPECT_EQ(list, expected);
+}
+
+}  // namespace
