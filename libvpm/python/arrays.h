@@ -64,6 +64,7 @@ void show(const Remarks& remarks, int callers = 0);
 
 // Define the classes and functions of one subject each.
 void bind_solid(py::module_& module);
+void bind_overlap(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_query(py::module_& module);
 void bind_haptics(py::module_& module);

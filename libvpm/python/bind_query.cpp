@@ -5,9 +5,9 @@
 #include <vpm/setup_check.h>
 
 #include <memory>
-#include <mutex>
 
 #include "libvpm/python/arrays.h"
+#include "libvpm/python/locked.h"
 
 namespace vpm::python {
 namespace {
@@ -31,24 +31,6 @@ std::vector<Tool> tools_of(const py::object& tools) {
   if (py::isinstance<Tool>(tools)) return {tools.cast<Tool>()};
   return tools.cast<std::vector<Tool>>();
 }
-
-// A query, and the lock that lets one thread at a time ask it while others run Python.
-template <class Asked>
-struct Locked {
-  template <class... Arguments>
-  explicit Locked(Arguments&&... arguments) : query(std::forward<Arguments>(arguments)...) {}
-
-  // Calls the function without Python's lock, one thread after another.
-  template <class Action>
-  auto ask(const Action& action) {
-    const py::gil_scoped_release unlocked;
-    const std::lock_guard turn(*busy);
-    return action(query);
-  }
-
-  Asked query;
-  std::unique_ptr<std::mutex> busy = std::make_unique<std::mutex>();
-};
 
 // Answers of many poses side by side. Its arrays share this memory.
 struct Results {

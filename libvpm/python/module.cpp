@@ -62,6 +62,7 @@ PYBIND11_MODULE(_vpm, module) {
   });
   bind_devices(module);
   bind_solid(module);
+  bind_overlap(module);
   bind_scene(module);
   bind_query(module);
   bind_haptics(module);

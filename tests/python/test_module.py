@@ -220,6 +220,21 @@ def test_setups_that_are_wrong_are_said(tool, cloud, scene):
     assert [remark.is_warning for remark in wrong.remarks()] == [True]
 
 
+def test_solids_share_what_geometry_says():
+    body = vpm.SolidBody(vpm.solid_of((CUBE, FACES)))
+    query = vpm.OverlapQuery(body, body)
+    for shift, shared in ((0.25, 0), (0.2, 0), (0.15, 0.05 * 0.04), (0, 0.008)):
+        overlap = query.run(np.eye(4), [shift, 0, 0, 0, 0, 0, 1])
+        assert overlap.volume == pytest.approx(shared, abs=1e-11) and overlap.closure <= 1e-8
+    overlap = query.run(np.eye(4), [0.15, 0, 0, 0, 0, 0, 1])
+    assert overlap.centroid == pytest.approx([0.075, 0, 0], abs=1e-9)
+    assert overlap.area == pytest.approx([0.04, 0, 0], abs=1e-9) and overlap.force[0] < 0
+    other = query.run([0.15, 0, 0, 0, 0, 0, 1], np.eye(4))
+    assert other.volume == overlap.volume and np.array_equal(other.force, -overlap.force)
+    with pytest.raises(vpm.ArgumentError):
+        vpm.OverlapQuery(vpm.SolidBody(vpm.solid_of((CUBE, FACES)), with_force=False), body)
+
+
 def test_a_coupling_holds_the_tool(tool):
     coupling = vpm.VirtualCoupling(tool.center_of_mass, np.eye(4), stiffness=500, damping=5,
                                    mass=vpm.critical_mass(500, 5), gyration=tool.gyration)
