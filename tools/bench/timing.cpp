@@ -1,6 +1,7 @@
 // Times each stage of the main job on a synthetic scene: a twisted torus of 0.25 m with 7200
 // triangles, a noisy depth image of a tilted wall with 307 200 points, and the same points without
-// their camera. If recorded images are given, times queries of these too.
+// their camera. Queries are also timed at random poses in clutter, pose by pose, and if recorded
+// images are given, in these.
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +18,7 @@
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
+#include "tools/bench/clutter.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"
@@ -77,18 +79,27 @@ class Timing {
   // calls.
   void time(const std::string& stage, std::size_t spheres, int runs,
             const std::function<void()>& body, std::size_t times = 1) {
+    report_times(stage, spheres, [&] {
+      std::vector<double> took = milliseconds_of(runs, body);
+      for (double& of_run : took) of_run /= static_cast<double>(times);
+      return took;
+    });
+  }
+  // Reports the spread of the times, ms, that `measure` returns with each number of threads.
+  void report_times(const std::string& stage, std::size_t spheres,
+                    const std::function<std::vector<double>()>& measure) {
     std::vector<double> medians;
     char text[160];
     std::snprintf(text, sizeof text, "%-42s %7zu", stage.c_str(), spheres);
     std::string line = text;
     for (const int threads : compared_threads(options_)) {
       const ThreadCap cap(options_, threads);
-      std::vector<double> took = milliseconds_of(runs, body);
-      for (double& of_run : took) of_run /= static_cast<double>(times);
+      const std::vector<double> took = measure();
       const Spread s = spread_of(took);
+      const auto runs = static_cast<double>(took.size());
       report_.table.rows.push_back({stage, static_cast<double>(spheres),
                                     static_cast<double>(threads), s.median, s.quartile1,
-                                    s.quartile3, s.min, s.max, static_cast<double>(runs)});
+                                    s.quartile3, s.min, s.max, runs});
       report_.results.push_back({{"stage", stage},
                                  {"spheres", spheres},
                                  {"threads", threads},
@@ -107,7 +118,7 @@ class Timing {
     report_.summary += line + text;
     if (options_.progress) {
       const double recorded = options_.data.empty() ? 0 : 1;
-      const double stages = 7 + recorded + (9 + 3 * recorded) * static_cast<double>(sizes_.size());
+      const double stages = 7 + recorded + (11 + 3 * recorded) * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -188,8 +199,36 @@ class Timing {
     time_query("query refined, points", points, pose);
     time_query("query refined, deep", cloud, deep);
     time_query("query refined, points, deep", points, deep);
+    time_clutter(model, spheres);
     if (poses_in_rooms_ > 0) time_rooms(model, spheres);
     time_query("query paper", cloud, pose, Measure::paper);
+  }
+
+  // Times queries in clutter: the spread over poses, and that over the dearest hundredth of them.
+  // Of each pose the shortest of some runs counts, since other programs only make it longer.
+  void time_clutter(const ToolModel& model, std::size_t spheres) {
+    const std::vector<Pose> poses =
+        poses_in_clutter(clutter_cloud_, options_.quick ? kPosesInClutter / 10 : kPosesInClutter);
+    const AnyBody clutter(clutter_cloud_);
+    ToolQuery query(model, {});
+    std::vector<double> took;
+    const auto time_all = [&] {
+      took.clear();
+      for (const Pose& pose : poses) {
+        const std::vector<double> runs =
+            milliseconds_of(runs_.slow, [&] { query.run(clutter, pose); });
+        took.push_back(*std::min_element(runs.begin(), runs.end()));
+      }
+      return took;
+    };
+    const auto time_dearest = [&] {
+      time_all();
+      std::sort(took.begin(), took.end());
+      return std::vector<double>(took.end() - static_cast<std::ptrdiff_t>((took.size() + 99) / 100),
+                                 took.end());
+    };
+    report_times("query refined, clutter", spheres, time_all);
+    report_times("query refined, clutter, dearest 1 %", spheres, time_dearest);
   }
 
   // Times queries in the recorded rooms, by their image, as measured, and by their points alone.
@@ -214,7 +253,7 @@ class Timing {
   }
 
   static constexpr int kPoses = 9;  // the middle one is 3/8 of the tool's height deep
-  static constexpr std::size_t kPosesInRoom = 32;
+  static constexpr std::size_t kPosesInRoom = 32, kPosesInClutter = 700;
   static constexpr std::uint64_t kMostTries = 10000;
   static constexpr std::uint32_t kScoutSpheres = 250;
   static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // parts of the tool, in rooms
@@ -233,6 +272,7 @@ class Timing {
   int done_ = 0;
   const synthetic::Scene scene_ = synthetic::make_scene("tilted-wall");
   const Solid solid_ = synthetic::make_twisted_torus(0.09, 0.05, 3, 900);
+  const Cloud clutter_cloud_ = make_clutter();
   Cloud cloud_, points_;  // points_: the same without camera
   std::vector<Recorded> recorded_;
   std::size_t poses_in_rooms_ = 0;

@@ -1,0 +1,103 @@
+#include "tools/bench/clutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/synthetic/render.h"
+#include "libvpm/synthetic/surface.h"
+#include "tools/bench/random_poses.h"
+
+namespace vpm::bench {
+namespace {
+
+constexpr std::uint64_t kNoiseSeed = 11, kThingSeed = 12, kHoleSeed = 13, kPoseSeed = 14;
+
+// Returns a number of a bell-shaped distribution, -2 to 2.
+double within_two(synthetic::NormalNumbers& numbers) {
+  return std::clamp(numbers.next(), -2.0, 2.0);
+}
+
+// Returns a table, tilted toward the camera, with things in rows and columns above it that do not
+// touch each other.
+synthetic::SurfacePtr make_table() {
+  constexpr int kColumns = 6, kRows = 4;
+  constexpr double kApart = 0.14, kSmallest = 0.025, kSpread = 0.006;  // m
+  const Vec3 up = normalized_or_zero({0, -0.5, -1}), middle{0, 0, 0.85};
+  const Vec3 across{1, 0, 0}, along = cross(up, across);
+  std::vector<synthetic::SurfacePtr> parts{synthetic::make_wall(middle, up)};
+  for (int k = 0; k < kColumns * kRows; ++k) {
+    synthetic::NormalNumbers numbers(kThingSeed, static_cast<std::uint64_t>(k));
+    const double size = kSmallest + kSpread * (2 + within_two(numbers));
+    const double x = kApart * (k % kColumns - 0.5 * (kColumns - 1)),
+                 y = kApart * (k / kColumns - 0.5 * (kRows - 1));
+    const Vec3 at = middle + x * across + y * along + 1.8 * size * up;
+    if (k % 3 == 0)
+      parts.push_back(synthetic::make_ball(at, size));
+    else
+      parts.push_back(
+          synthetic::make_block({size, 2 * size, 1.5 * size}, {random_rotation(numbers), at}));
+  }
+  return synthetic::make_union(std::move(parts));
+}
+
+// Unsets the pixels to the right of nearer ones, as far as the shadow of what is nearer falls.
+void unset_shadows(DepthImage& image, double shift) {
+  const std::vector<float> seen = image.depth;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!(seen[i] > 0)) continue;
+    const std::size_t u = i % image.width;
+    for (std::size_t left = 1; left <= std::min<std::size_t>(u, 24); ++left) {
+      const double nearer = seen[i - left];
+      if (nearer > 0 && shift * (1 / nearer - 1 / double{seen[i]}) > static_cast<double>(left))
+        image.depth[i] = 0;
+    }
+  }
+}
+
+// Unsets round holes.
+void unset_holes(DepthImage& image) {
+  constexpr int kHoles = 60;
+  constexpr double kRadius = 9;  // pixels, of an average one
+  for (std::uint64_t k = 0; k < kHoles; ++k) {
+    synthetic::NormalNumbers numbers(kHoleSeed, k);
+    const double u0 = image.width * (0.5 + 0.22 * within_two(numbers)),
+                 v0 = image.height * (0.5 + 0.22 * within_two(numbers)),
+                 radius = kRadius * (1 + 0.4 * within_two(numbers));
+    for (std::size_t i = 0; i < image.depth.size(); ++i) {
+      const double u = static_cast<double>(i % image.width) - u0,
+                   v = static_cast<double>(i / image.width) - v0;
+      if (u * u + v * v < radius * radius) image.depth[i] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+Cloud make_clutter() {
+  constexpr double kBaseline = 0.075;  // m, between camera and projector
+  const Camera camera = synthetic::default_camera();
+  DepthImage image = synthetic::render_with_kinect_noise(*make_table(), camera, kNoiseSeed);
+  unset_shadows(image, camera.intrinsics.fx * kBaseline);
+  unset_holes(image);
+  return assemble_cloud(image, camera, estimate_normals(image, camera.intrinsics, {}));
+}
+
+std::vector<Pose> poses_in_clutter(const Cloud& cloud, std::size_t count) {
+  constexpr double kAside = 0.025;  // m
+  std::vector<Pose> poses;
+  for (std::uint64_t k = 0; poses.size() < count; ++k) {
+    synthetic::NormalNumbers numbers(kPoseSeed, k);
+    const double fraction = std::fabs(within_two(numbers)) / 2;
+    const auto point =
+        static_cast<std::size_t>(fraction * static_cast<double>(cloud.positions.size() - 1));
+    const Vec3 aside{within_two(numbers), within_two(numbers), within_two(numbers)};
+    const Vec3 at = cloud.origin + widen(cloud.positions[point]) + kAside * aside;
+    poses.push_back({random_rotation(numbers), at});
+  }
+  return poses;
+}
+
+}  // namespace vpm::bench
