@@ -2,7 +2,6 @@
 // hold. Programs cannot do either.
 #pragma once
 
-#include <vpm/overlap.h>
 #include <vpm/scene.h>
 #include <vpm/solid.h>
 #include <vpm/tool.h>

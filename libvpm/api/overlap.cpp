@@ -1,4 +1,4 @@
-#include <vpm/overlap.h>
+#include <vpm/solid.h>
 
 #include <cmath>
 

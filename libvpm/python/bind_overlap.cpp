@@ -1,5 +1,5 @@
 // What two solids share: SolidBody, Overlap, OverlapQuery.
-#include <vpm/overlap.h>
+#include <vpm/solid.h>
 
 #include <memory>
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <vpm/depth_stream.h>
 #include <vpm/level_query.h>
-#include <vpm/overlap.h>
 #include <vpm/query.h>
 #include <vpm/setup_check.h>
 #include <vpm/solid.h>

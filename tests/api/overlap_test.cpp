@@ -1,7 +1,7 @@
 // What two solids share, as programs ask it.
 
 #include <gtest/gtest.h>
-#include <vpm/overlap.h>
+#include <vpm/solid.h>
 
 #include <array>
 #include <cmath>
