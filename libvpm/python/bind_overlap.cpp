@@ -56,7 +56,7 @@ void bind_answer(py::module_& module) {
       });
 }
 
-void bind_query(py::module_& module) {
+void bind_overlap_query(py::module_& module) {
   using LockedQuery = Locked<OverlapQuery>;
   py::class_<LockedQuery>(module, "OverlapQuery",
                           "Measures two solids at many poses. Threads that ask it take turns.")
@@ -83,7 +83,7 @@ void bind_query(py::module_& module) {
 void bind_overlap(py::module_& module) {
   bind_body(module);
   bind_answer(module);
-  bind_query(module);
+  bind_overlap_query(module);
 }
 
 }  // namespace vpm::python

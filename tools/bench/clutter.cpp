@@ -13,7 +13,7 @@
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kNoiseSeed = 11, kThingSeed = 12, kHoleSeed = 13, kPoseSeed = 14;
+constexpr std::uint64_t kClutterNoiseSeed = 11, kThingSeed = 12, kHoleSeed = 13, kPoseSeed = 14;
 
 // Returns a number of a bell-shaped distribution, -2 to 2.
 double within_two(synthetic::NormalNumbers& numbers) {
@@ -79,7 +79,7 @@ void unset_holes(DepthImage& image) {
 Cloud make_clutter() {
   constexpr double kBaseline = 0.075;  // m, between camera and projector
   const Camera camera = synthetic::default_camera();
-  DepthImage image = synthetic::render_with_kinect_noise(*make_table(), camera, kNoiseSeed);
+  DepthImage image = synthetic::render_with_kinect_noise(*make_table(), camera, kClutterNoiseSeed);
   unset_shadows(image, camera.intrinsics.fx * kBaseline);
   unset_holes(image);
   return assemble_cloud(image, camera, estimate_normals(image, camera.intrinsics, {}));
