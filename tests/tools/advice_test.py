@@ -53,12 +53,18 @@ UNTRIED = [
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
         "make it with rotation_from_matrix or rotation_from_quaternion", "make their queries with the same options",
         "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh", "use the one that it was moved to",
-        "leave `deadline_seconds` out, or ask pose by pose",
+        "leave `deadline_seconds` out, or ask pose by pose", "give a number above 0, in N/m^3",
+        "make both with `with_force`, or ask without", "give a closed mesh that is oriented outward",
         "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
     ]),
     ("an answer of vpm-query --serve: cases/serve.t", [
         'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',
         'write {"pose": [tx,ty,tz,qx,qy,qz,qw]} or {"cloud": "scene.vpmc"}, with an "id" if wanted',
+    ]),
+    ("of files that are told by their first bytes, and of depths that may be coded: tests/file, tests/recording, tests/import", [
+        "save it as CSV", "unpack it first: tar xf", "extract its depth images first", "(SUN3D), or `decode` rotated",
+        "and `depth_scale` 10000, which make that",
+        "all values are multiples of 257, as 8 bits are that were widened to 16; if so, give the image that they were made of",
     ]),
     ("said by a build without a library, or with CUDA", [
         "give the .vpmg that vpm-pack and vpm-graph make of it",
@@ -74,6 +80,7 @@ UNTRIED = [
         ", which is no number; pack the mesh again, or leave --mesh out", "choose one of the size of the gaps between them",
     ]),
     ("takes a large input, or many seconds: tests/mesh/broad_phase_test.cpp, tests/faults", [
+        "not all gaps were searched, so larger spheres may fit; a higher --spheres searches more",
         "delete doubled or tangled parts, or give `repair` voxel for a new surface",
         "`repair` holes, voxel or flood may close it, or mend it in a mesh editor",
         "delete doubled or inner parts, or pack the parts one by one", "crop it", "crop it, or take every second one",
@@ -172,6 +179,8 @@ def advice_in_sources():
     """Returns the texts in the sources that advise something, but for help texts and tables."""
     for path in sorted(p for folder in ("libvpm", "tools") for p in (SOURCE / folder).rglob("*") if p.suffix in (".cpp", ".cu",
     ".h")):
+        if path.parent.name == "python":  # says it to programs: tests/python
+            continue
         code = re.sub(r"^\s*#.*$|(?<![:\"])//.*$", "", path.read_text(), flags=re.MULTILINE)
         code = re.sub(r"add_(?:option|flag)\w*\([^;]*;", "", code)
         for literal in LITERALS.findall(code):
