@@ -33,8 +33,9 @@ SolidMesh shown(const SolidMesh& mesh) {
   return mesh;
 }
 
-std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::array& faces) {
-  if (faces.ndim() != 2 || faces.shape(1) != 3)
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const py::object& given) {
+  const py::array faces = py::array::ensure(given);
+  if (!faces || faces.ndim() != 2 || faces.shape(1) != 3)
     reject("`triangles` must have the shape (M, 3)", "split faces of more corners into triangles");
   if (faces.dtype().kind() != 'i' && faces.dtype().kind() != 'u')
     reject("`triangles` must be integers, indices of vertices");
@@ -96,7 +97,7 @@ void bind_mesh(py::module_& module) {
               .c_str())
       .def_static(
           "from_triangles",
-          [](const Numbers& vertices, const py::array& triangles, std::optional<double> scale,
+          [](const Numbers& vertices, const py::object& triangles, std::optional<double> scale,
              std::optional<double> weld, const std::string& repair, int repair_voxels,
              std::optional<double> max_hole) {
             const std::vector<Vec3> corners = vectors_of(vertices, "vertices");

@@ -226,10 +226,12 @@ def test_solids_share_what_geometry_says():
     for shift, shared in ((0.25, 0), (0.2, 0), (0.15, 0.05 * 0.04), (0, 0.008)):
         overlap = query.run(np.eye(4), [shift, 0, 0, 0, 0, 0, 1])
         assert overlap.volume == pytest.approx(shared, abs=1e-11) and overlap.closure <= 1e-8
-    overlap = query.run(np.eye(4), [0.15, 0, 0, 0, 0, 0, 1])
-    assert overlap.centroid == pytest.approx([0.075, 0, 0], abs=1e-9)
-    assert overlap.area == pytest.approx([0.04, 0, 0], abs=1e-9) and overlap.force[0] < 0
-    other = query.run([0.15, 0, 0, 0, 0, 0, 1], np.eye(4))
+    pose = [0.15, 0.03, -0.02, 0, 0, 0, 1]
+    overlap = query.run(np.eye(4), pose)
+    assert overlap.volume == pytest.approx(0.05 * 0.17 * 0.18, abs=1e-11)
+    assert overlap.centroid == pytest.approx([0.075, 0.015, -0.01], abs=1e-9)
+    assert overlap.area == pytest.approx([0.17 * 0.18, 0.05 * 0.18, -0.05 * 0.17], abs=1e-9) and overlap.force[0] < 0
+    other = query.run(pose, np.eye(4))
     assert other.volume == overlap.volume and np.array_equal(other.force, -overlap.force)
     with pytest.raises(vpm.ArgumentError):
         vpm.OverlapQuery(vpm.SolidBody(vpm.solid_of((CUBE, FACES)), with_force=False), body)
