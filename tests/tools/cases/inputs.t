@@ -123,8 +123,8 @@ $ vpm-pack cube.off -o cube.stl --spheres 5
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o results.vpmc
 2> vpm-query: error: results.vpmc: this output is JSON, and .vpmc is the ending of another kind of file; name it .json or .jsonl, or give --force
 [2]
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o results.csv
-2> vpm-query: error: results.csv: this output is JSON, and .csv is the ending of another kind of file; name it .json or .jsonl, or give --force
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o results.ply
+2> vpm-query: error: results.ply: this output is JSON, and .ply is the ending of another kind of file; name it .json or .jsonl, or give --force
 [2]
 $ vpm-graph cube.vpmp -o model.txt
 2> vpm-graph: error: model.txt: this output is a tool model (.vpmg), and .txt is the ending of another kind of file; let its name end in .vpmg, or give --force
