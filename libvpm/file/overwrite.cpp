@@ -110,6 +110,10 @@ void check_folder_of(const std::string& path) {
   }
 }
 
+bool is_container(const std::string& path) {
+  return content_of(path).content == Content::container;
+}
+
 bool is_same_file(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty() || a == "-" || b == "-") return false;
   std::error_code fault;

@@ -27,6 +27,10 @@ void check_page(const std::string& path);
 // Checks only that the folder exists (--force). Throws Error(cannot_write).
 void check_folder_of(const std::string& path);
 
+// True if the file begins as those of this library do: reads its first bytes alone. Pipes, devices
+// and what is not there never do.
+bool is_container(const std::string& path);
+
 // True if both paths lead to the same regular file, which need not exist yet. Pipes and devices
 // never count as the same.
 bool is_same_file(const std::string& a, const std::string& b);

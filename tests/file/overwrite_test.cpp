@@ -41,6 +41,13 @@ TEST_F(Overwrite, NothingIsReplacedButEmptyFiles) {
   }
 }
 
+TEST_F(Overwrite, AContainerIsToldByItsFirstBytes) {
+  EXPECT_TRUE(is_container(path("cloud")));
+  for (const char* name : {"text", "empty", "new"}) EXPECT_FALSE(is_container(path(name))) << name;
+  EXPECT_FALSE(is_container("-"));
+  EXPECT_FALSE(is_container("/dev/null"));
+}
+
 TEST_F(Overwrite, NamesMustNotEndLikeOtherKinds) {
   EXPECT_EQ(container("new.vpmc"), std::nullopt);
   EXPECT_EQ(container("new.v2"), std::nullopt);

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "libvpm/file/overwrite.h"
 #include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
@@ -71,7 +72,7 @@ bool is_mesh_file(const std::string& path) {
   static const std::set<std::string> kEndings{".stl", ".obj", ".off",  ".ply", ".om",
                                               ".dae", ".glb", ".gltf", ".3mf", ".fbx"};
   std::error_code fault;
-  if (!fs::is_regular_file(path, fault)) return false;
+  if (!fs::is_regular_file(path, fault) || file::is_container(path)) return false;
   const std::vector<std::byte> bytes = file::read_all(path);
   if (const auto content = file::sniff(bytes)) return content->is_mesh;
   return kEndings.contains(file::in_lower_case(fs::path(path).extension().string()));
