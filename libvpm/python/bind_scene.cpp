@@ -16,65 +16,31 @@ NormalOptions normals_of(const std::string& method, int window, double edge_gate
   return {method_of(method), window, edge_gate};
 }
 
-// Parameters of an import that Python gives by name, and how they are declared.
-struct ImportArguments {
-  py::object intrinsics, camera_pose;
-  std::string axes;
-  std::optional<double> depth_scale;
-  std::string decode;
-  std::vector<double> invalid;
-  bool usual_invalid;
-  std::optional<std::pair<double, double>> range;
-  bool along_ray;
-  std::string channel;
-  bool flip;
-  std::string method;
-  int window;
-  double edge_gate;
-
-  static ImportArguments of(const py::kwargs& given) {
-    ImportArguments all;
-    py::dict rest = given.attr("copy")();
-    const auto take = [&](const char* name, auto fallback) {
-      if (!rest.contains(name)) return fallback;
-      return rest.attr("pop")(name).cast<decltype(fallback)>();
-    };
-    all.intrinsics = take("intrinsics", py::object(py::none()));
-    all.camera_pose = take("camera_pose", py::object(py::none()));
-    all.axes = take("axes", std::string("opencv"));
-    all.depth_scale = take("depth_scale", std::optional<double>());
-    all.decode = take("decode", std::string());
-    all.invalid = take("invalid", std::vector<double>());
-    all.usual_invalid = take("usual_invalid", true);
-    all.range = take("range", std::optional<std::pair<double, double>>());
-    all.along_ray = take("along_ray", false);
-    all.channel = take("channel", std::string());
-    all.flip = take("flip", false);
-    all.method = take("method", std::string("inverse-depth"));
-    all.window = take("window", NormalOptions().window);
-    all.edge_gate = take("edge_gate", kEdgeGate);
-    for (const auto& [name, value] : rest)
-      throw py::type_error("unexpected keyword argument '" + name.cast<std::string>() + "'");
-    return all;
-  }
-
-  ImportParameters parameters() const {
-    ImportParameters made;
-    if (!intrinsics.is_none()) made.intrinsics = intrinsics_of(Numbers(intrinsics));
-    if (!camera_pose.is_none()) made.camera_pose = pose_of(Numbers(camera_pose));
-    made.axes = axes_of(axes);
-    made.depth_scale = depth_scale;
-    made.decode = decode;
-    made.invalid = invalid;
-    made.usual_invalid = usual_invalid;
-    if (range) made.range = {range->first, range->second};
-    made.along_ray = along_ray;
-    made.channel = channel;
-    made.flip = flip;
-    made.normals = normals_of(method, window, edge_gate);
-    return made;
-  }
-};
+// Returns the parameters of an import; vpm/__init__.py names and gives them.
+ImportParameters parameters_of(const py::kwargs& given) {
+  const auto of = [&]<class Value>(const char* name, Value fallback) {
+    return given.contains(name) ? given[name].cast<Value>() : fallback;
+  };
+  ImportParameters made;
+  if (const auto k = of("intrinsics", py::object(py::none())); !k.is_none())
+    made.intrinsics = intrinsics_of(Numbers(k));
+  if (const auto pose = of("camera_pose", py::object(py::none())); !pose.is_none())
+    made.camera_pose = pose_of(Numbers(pose));
+  made.axes = axes_of(of("axes", std::string("opencv")));
+  made.depth_scale = of("depth_scale", made.depth_scale);
+  made.decode = of("decode", made.decode);
+  made.invalid = of("invalid", made.invalid);
+  made.usual_invalid = of("usual_invalid", made.usual_invalid);
+  if (const auto range = of("range", std::optional<std::pair<double, double>>()))
+    made.range = {range->first, range->second};
+  made.along_ray = of("along_ray", made.along_ray);
+  made.channel = of("channel", made.channel);
+  made.flip = of("flip", made.flip);
+  made.normals =
+      normals_of(of("method", std::string("inverse-depth")), of("window", made.normals.window),
+                 of("edge_gate", made.normals.edge_gate));
+  return made;
+}
 
 constexpr const char* kImportArguments =
     "intrinsics: fx, fy, cx, cy in pixels, or a matrix (3, 3); needed for depth images.\n"
@@ -151,7 +117,7 @@ void bind_cloud(py::module_& module) {
   module.def(
       "import_cloud",
       [](const std::string& path, const py::kwargs& given) {
-        const ImportParameters parameters = ImportArguments::of(given).parameters();
+        const ImportParameters parameters = parameters_of(given);
         Remarks remarks;
         const auto import = [&] {
           const py::gil_scoped_release unlocked;
@@ -169,7 +135,7 @@ void bind_cloud(py::module_& module) {
   module.def(
       "import_depth",
       [](const py::array& image, const py::kwargs& given) {
-        return import_image(image, ImportArguments::of(given).parameters());
+        return import_image(image, parameters_of(given));
       },
       py::arg("image"),
       (std::string("Returns the cloud of a depth image in memory: an array (height, width) of "

@@ -3,13 +3,13 @@
 
 #include <pybind11/pybind11.h>
 
-#include <memory>
 #include <mutex>
 #include <utility>
 
 namespace vpm::python {
 
-// A query, and the lock that lets one thread at a time ask it while others run Python.
+// Holds a query that threads of Python ask in turn: a C++ query belongs to one thread at a time,
+// and Python's own lock is given up while it computes.
 template <class Asked>
 struct Locked {
   template <class... Arguments>
@@ -19,12 +19,12 @@ struct Locked {
   template <class Action>
   auto ask(const Action& action) {
     const pybind11::gil_scoped_release unlocked;
-    const std::lock_guard turn(*busy);
+    const std::lock_guard turn(busy);
     return action(query);
   }
 
   Asked query;
-  std::unique_ptr<std::mutex> busy = std::make_unique<std::mutex>();
+  std::mutex busy;
 };
 
 }  // namespace vpm::python
