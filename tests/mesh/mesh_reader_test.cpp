@@ -245,14 +245,13 @@ TEST(MeshReader, TruncationAnywhereIsRefusedOrSaid) {
   }
 }
 
-// Random changes; fuzz.obj, fuzz.solid and their like make more.
 TEST(MeshReader, DamagedBytesNeverDoMoreThanRefuse) {
   const Solid cube = make_cube(0.1);
   std::mt19937 random(7);
   for (const std::string& content :
        {as_obj(cube), as_off(cube), as_ascii_ply(cube), as_binary_ply(cube, false),
         as_binary_ply(cube, true), as_ascii_stl(cube), as_binary_stl(cube)}) {
-    for (int round = 0; round < 100; ++round) {
+    for (int round = 0; round < 500; ++round) {
       std::string damaged = content;
       for (int flips = 0; flips < 1 + round % 4; ++flips)
         damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
