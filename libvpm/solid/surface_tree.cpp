@@ -113,15 +113,29 @@ class SurfaceTree::Build {
       for (const std::uint32_t v : tree_.triangles_[t]) take(tree_.vertices_[v]);
   }
 
-  // Returns the direction of the area vector in floats; any axis if that is zero.
-  Vec3 slab_normal(Range range) const {
+  // Two parallel planes with triangles between them.
+  struct Slab {
+    Vec3 normal;  // in floats
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    double middle() const { return 0.5 * (low + high); }
+    double half_width() const { return 0.5 * (high - low); }
+  };
+
+  // Returns the slab of triangles across the direction of their area vector, or across any axis if
+  // that is zero.
+  Slab slab_of(Range range) const {
     Vec3 area;
     for (std::uint32_t t = range.begin; t < range.end; ++t) {
       const auto [a, b, c] = tree_.corners(t);
       area += cross(b - a, c - a);
     }
     const Vec3 unit = normalized_or_zero(area);
-    return widen(narrow(squared_norm(unit) > 0 ? unit : Vec3{1, 0, 0}));
+    Slab slab{widen(narrow(squared_norm(unit) > 0 ? unit : Vec3{1, 0, 0}))};
+    for_vertices(range, [&](Vec3 v) {
+      const double height = dot(slab.normal, v);
+      slab.low = std::min(slab.low, height), slab.high = std::max(slab.high, height);
+    });
+    return slab;
   }
 
   void set_bounds(std::uint32_t k) {
@@ -136,23 +150,19 @@ class SurfaceTree::Build {
       const Range range = range_of(child);
       if ((child & kLeaf) != 0) tree_.parent_of_[child & ~kLeaf] = k;
       Box box;
-      double low = HUGE_VAL, high = -HUGE_VAL;
-      const Vec3 normal = slab_normal(range);
-      for_vertices(range, [&](Vec3 v) {
-        box.add(v);
-        low = std::min(low, dot(normal, v)), high = std::max(high, dot(normal, v));
-      });
+      for_vertices(range, [&](Vec3 v) { box.add(v); });
+      const Slab slab = slab_of(range);
       float size = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const int axis = static_cast<int>(i);
         const double from = coordinate(box.low, axis), to = coordinate(box.high, axis);
         node.center[i][lane] = static_cast<float>(0.5 * (from + to));
         node.half[i][lane] = static_cast<float>(0.5 * (to - from) + padding_);
-        node.normal[i][lane] = static_cast<float>(coordinate(normal, axis));
+        node.normal[i][lane] = static_cast<float>(coordinate(slab.normal, axis));
         size += node.half[i][lane];
       }
-      node.offset[lane] = static_cast<float>(0.5 * (low + high));
-      node.width[lane] = static_cast<float>(0.5 * (high - low) + padding_);
+      node.offset[lane] = static_cast<float>(slab.middle());
+      node.width[lane] = static_cast<float>(slab.half_width() + padding_);
       node.size[lane] = (child & kLeaf) != 0 ? 0 : size;
     }
   }
@@ -209,14 +219,11 @@ class SurfaceTree::Build {
         area += twice, sum += twice / 3 * (a + b + c);
       }
       patch.middle = area > 0 ? sum / area : tree_.corners(ranges_[k].begin)[0];
-      const Vec3 normal = slab_normal(ranges_[k]);
-      double radius2 = 0, low = HUGE_VAL, high = -HUGE_VAL;
-      for_vertices(ranges_[k], [&](Vec3 v) {
-        radius2 = std::max(radius2, squared_norm(v - patch.middle));
-        low = std::min(low, dot(normal, v)), high = std::max(high, dot(normal, v));
-      });
+      double radius2 = 0;
+      for_vertices(ranges_[k],
+                   [&](Vec3 v) { radius2 = std::max(radius2, squared_norm(v - patch.middle)); });
       patch.radius = std::sqrt(radius2);
-      patch.thickness = 0.5 * (high - low);
+      patch.thickness = slab_of(ranges_[k]).half_width();
       for (const std::uint32_t child : tree_.nodes_[k].child) {
         if (child == kNone) continue;
         if ((child & kLeaf) != 0) {
