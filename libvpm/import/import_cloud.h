@@ -82,7 +82,8 @@ NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string&
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
                            const ImportOptions& options);
 
-// Returns the cloud of a depth image, as import_cloud does of a file that holds it.
+// Returns the cloud of a depth image that is in memory already. Estimates normals, says what is
+// doubtful, and throws as import_cloud does for a file that holds the same values.
 ImportedCloud import_depth(const RawDepth& raw, const std::string& name,
                            const ImportOptions& options);
 

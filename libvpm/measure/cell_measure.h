@@ -4,7 +4,8 @@
 // block without surface counts whole or not at all; in the others each sample counts by its
 // fraction. The step of a piece is: sample the surface at its middle (sample_of), note what it
 // tells of the cell (note), find the direction that way_out() names, push or divide it (push).
-// Backends choose where directions are searched for, and in which order.
+// A backend chooses when it searches for the directions, one by one or several together, and in
+// which order it takes the pieces.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,8 @@ constexpr int kGridCells = 64;
 constexpr double kFacet = 0.12;
 // Largest number of facets, relative to the triangles, that replace these for the volume too.
 constexpr double kFewFacets = 1.25;
-// Depths below so many cells are those of the closest point.
+// The grid tells depths of this many of its cells and more; smaller ones are distances to the
+// closest point, since the grid is wrong by a cell or two near the surface.
 constexpr double kNearCells = 1.5;
 
 // Returns a well-mixed number from 0 to 1 (the finaliser of MurmurHash3, public domain).

@@ -223,7 +223,8 @@ InnerSurface SurfacePair::result(const Role& role) const {
           torque + unit4 * role.cut_wrench.torque.real()};
 }
 
-// Adds the force on a node inside, by pieces small and flat enough that the depth is linear there.
+// Adds the force on the part of a surface below the node `top`, all of which is inside the other
+// solid. Descends to parts so small and flat that the depth may be taken for linear over each.
 void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
   Role& role = roles_[which];
   const SolidSurface& other = *roles_[1 - which].solid;

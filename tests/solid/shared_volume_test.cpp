@@ -76,7 +76,8 @@ TEST(SharedVolume, OfTenMicrometresIsRightToATenThousandthOfItself) {
   EXPECT_NEAR(shared.volume, expected, 1e-4 * expected);
   EXPECT_NEAR(shared.centroid.x, .05 - .5e-5, 1e-9);
   EXPECT_NEAR(shared.centroid.y, .01, 1e-9);
-  // The first's face looks along x.
+  // Inside the other lie .08 x .07 m of the first cube's face toward +x, and strips of two of the
+  // faces beside it, which do not count along x.
   EXPECT_NEAR(shared.area.x, .08 * .07, 1e-9);
 }
 

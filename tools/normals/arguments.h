@@ -27,9 +27,9 @@ nlohmann::json provenance_of(const Program& program, const ImportOptions& option
 // True if the input is a recording: a folder, or a list of frames whose output is a folder.
 bool is_recording(const Arguments& arguments);
 
-// Makes a cloud of each frame of a recording, in the folder of the output. Throws Error for options
-// that do not go with recordings, for a folder that is not empty without --force, and where no
-// frame can be used; other frames are left out with a warning.
+// Makes a cloud of each frame of a recording, in the folder of the output. A frame that cannot be
+// used is left out with a warning. Throws Error if none can be used, if an option is given that
+// says nothing of recordings, and, without --force, if the folder is not empty.
 void run_recording(const Program& program, const Arguments& arguments);
 
 }  // namespace vpm::tools

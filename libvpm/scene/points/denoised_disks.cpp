@@ -21,7 +21,8 @@ inline bool is_smooth(DiskKind kind) {
 }
 
 constexpr std::uint32_t kFewOpposite = 5;  // fewer disks that face back show no second side
-// A disk higher than this above the disks about it, in sampling radii, stands off alone.
+// A disk with few alike neighbours stands off alone, so that it tells no surface, if it lies higher
+// than this above them on average, in sampling radii.
 constexpr double kStandsOff = 2;
 // Neighbours are alike if their normals differ by less than 25 degrees (kAlike). A disk is a stray
 // if fewer than kFewTogether neighbours are alike, even within twice the usual distance, and an
