@@ -238,9 +238,6 @@ def test_fifo(room):
 
 
 def test_endless_input(room):
-    for tool in ("vpm-pack", "vpm-normals"):
-        done = room.run(room.command(tool, "/dev/zero", "-o", "out"))
-        expect_error(done, REFUSED, "/dev/zero", "1073741824 bytes")
     endless = subprocess.Popen(["yes", "v 0 0 0"], stdout=subprocess.PIPE)
     done = room.run(room.command("vpm-pack", "-", "-o", "out"), stdin=endless.stdout)
     endless.kill()
@@ -254,7 +251,7 @@ def test_changing_input(room):
     """A file that grows while it is read is refused."""
     path = room.folder / "grows.obj"
     with path.open("wb") as file:
-        file.truncate(400 << 20)
+        file.truncate(64 << 20)
     done_reading = threading.Event()
 
     def grow():
