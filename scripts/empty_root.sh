@@ -19,6 +19,10 @@ cannot() {
 # Fills the root with an empty Debian and the copy. Runs in the namespaces.
 fill() {
   local root=$1 repository=$2
+  # In memory, where that is plenty: packages unpack faster, and the root is gone at once.
+  local available
+  available=$(awk '/^MemAvailable:/ { print int($2 / 1048576) }' /proc/meminfo)
+  if ((${available:-0} >= 16)); then mount -t tmpfs -o size=10g,mode=755 none "$root" || true; fi
   echo "== Setting up an empty Debian 12 in $root"
   if ! timeout 900 debootstrap --variant=minbase bookworm "$root" >"$root.log" 2>&1; then
     tail -n 20 "$root.log" >&2
