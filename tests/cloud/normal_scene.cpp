@@ -1,11 +1,11 @@
 #include "tests/cloud/normal_scene.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace vpm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kHalfWindow = 3;
 // Limits within which neighbours belong to one surface: relative depth, and the cosine between
 // normals (37 degrees).
@@ -79,7 +79,7 @@ double mean_error(const NormalScene& scene, const std::vector<Vec3f>& normals,
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (!use[i] || !exists(normals[i]) || scene.truth[i] == Vec3{}) continue;
-    sum += angle_between(normals[i], scene.truth[i]) * 180 / kPi;
+    sum += angle_between(normals[i], scene.truth[i]) * 180 / std::numbers::pi;
     count += 1;
   }
   return sum / count;
