@@ -64,6 +64,7 @@ class ModelReader {
   void take_vertex(const XmlElement& element);
   void take_triangle(const XmlElement& element);
   void take_item(const XmlElement& element);
+  void take_setting(std::string_view value);
   ThreemfComponent component(const XmlElement& element) const;
   std::uint64_t count(const XmlElement& element, std::string_view attribute) const;
   void check_triangles() const;
@@ -164,11 +165,7 @@ void ModelReader::take_part_of_mesh(const XmlElement& element) {
 
 void ModelReader::take_item(const XmlElement& element) {
   const std::string printable = element.text_of("printable");
-  if (printable == "0" || printable == "false") {
-    ++model_.unprintable;
-  } else {
-    model_.build.push_back(component(element));
-  }
+  model_.build.push_back({component(element), "", printable != "0" && printable != "false"});
 }
 
 void ModelReader::begin(const XmlElement& element) {
@@ -191,21 +188,27 @@ void ModelReader::begin(const XmlElement& element) {
     if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end()) object_->ignored = name;
   } else if (object_ != nullptr && (name == "metadata" || name == "setting")) {
     setting_ = element.text_of(name == "metadata" ? "name" : "key");
+  } else if (name == "metadata" && element.is_in({"build", "item", "metadatagroup"})) {
+    setting_ = element.text_of("name");
   } else if (object_ != nullptr) {
     take_part_of_mesh(element);
   }
 }
 
 // Cura tells in settings of an object that it is no part of the solid, in its own words.
+void ModelReader::take_setting(std::string_view value) {
+  const std::string key = setting_.substr(setting_.rfind(':') + 1);
+  const bool is_mesh = key == "support_mesh" || key == "anti_overhang_mesh" ||
+                       key == "infill_mesh" || key == "cutting_mesh";
+  const bool is_set = file::is_word(value, "true") || file::is_word(value, "1");
+  if (is_mesh && is_set)
+    (object_ != nullptr ? object_->setting : model_.build.back().setting) = key;
+  setting_.clear();
+}
+
 void ModelReader::end(const XmlElement& element, std::string_view text) {
+  if (!setting_.empty()) take_setting(text);
   if (object_ == nullptr) return;
-  if (!setting_.empty()) {
-    const std::string key = setting_.substr(setting_.rfind(':') + 1);
-    const bool is_mesh = key == "support_mesh" || key == "anti_overhang_mesh" ||
-                         key == "infill_mesh" || key == "cutting_mesh";
-    if (is_mesh && file::is_word(text, "true")) object_->setting = key;
-    setting_.clear();
-  }
   if (element.name() != "object" || !element.is_in({"model", "resources"})) return;
   check_triangles();
   const bool has_shape = !object_->triangles.empty() || !object_->components.empty();

@@ -25,6 +25,12 @@ struct ThreemfComponent {
   Pose place;  // to the coordinates around it; its rotation may be any matrix
 };
 
+// Object that the build places.
+struct ThreemfItem : ThreemfComponent {
+  std::string setting;  // as that of an object
+  bool is_printed = true;
+};
+
 struct ThreemfObject {
   std::string name;
   std::string role;     // "model", "support", ... by the core specification
@@ -41,8 +47,7 @@ struct ThreemfModel {
   std::string unit;      // as the file names it; empty where it does not
   double metres = .001;  // length of the unit
   std::map<std::uint64_t, ThreemfObject> objects;
-  std::vector<ThreemfComponent> build;
-  std::size_t unprintable = 0;  // items of the build that are not to be printed, as slicers say
+  std::vector<ThreemfItem> build;
 };
 
 // Reads a model part, given its XML, in the file's unit. Throws Error(refused) with the file's name

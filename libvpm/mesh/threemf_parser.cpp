@@ -103,6 +103,7 @@ class Placement {
   std::vector<Placed> placed_{{nullptr, {}}};  // one for each node
   std::size_t depth_ = 0, visits_ = 0;
   std::map<std::string, std::size_t> left_out_;  // counts of parts by their roles
+  std::size_t unprinted_ = 0;                    // items of the build that are left out
 };
 
 // Returns the model part of the package, which is read once.
@@ -210,13 +211,13 @@ void Placement::add(std::size_t node, RawMesh& mesh) const {
 }
 
 void Placement::add_notes(RawMesh& mesh) const {
-  std::size_t count = main_->unprintable;
+  std::size_t count = unprinted_;
   std::string words;
   for (const auto& [word, parts] : left_out_) {
     words += (words.empty() ? "" : ", ") + file::shown(word);
     count += parts;
   }
-  if (main_->unprintable > 0) words += (words.empty() ? "" : ", ") + std::string("not printable");
+  if (unprinted_ > 0) words += (words.empty() ? "" : ", ") + std::string("not printable");
   if (count > 0) {
     mesh.notes.push_back(std::to_string(count) + (count == 1 ? " part is" : " parts are") +
                          " left out as no part of the solid: " + words);
@@ -236,9 +237,13 @@ RawMesh Placement::mesh(const std::string& node) {
   settings_ = slicer_settings(archive_, name_);
   key_store_ = file::in_lower_case(archive_.unpacked("Secure/keystore.xml").value_or(""));
   main_ = &part(path);
-  for (const ThreemfComponent& item : main_->build) {
+  for (std::size_t k = 0; k < main_->build.size(); ++k) {
+    const ThreemfItem& item = main_->build[k];
     const auto word = settings_.parts.find({item.object, item.object});
-    place(*main_, item, 0, {}, word != settings_.parts.end() ? word->second : "");
+    if (!item.is_printed || settings_.unprinted.contains(k))
+      ++unprinted_;
+    else
+      place(*main_, item, 0, {}, word != settings_.parts.end() ? word->second : item.setting);
   }
   const NodeChoice choice(nodes_, name_);
   const std::vector<std::size_t> chosen = choice.choose(node);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/json_text.h"
 #include "libvpm/file/text.h"
+#include "libvpm/mesh/gltf_json.h"
 #include "libvpm/mesh/xml_elements.h"
 
 namespace vpm {
@@ -33,6 +36,33 @@ void take(const XmlElement& element, std::uint64_t& object, SlicerSettings& sett
   }
 }
 
+// Reads the project of PrusaSlicer 3, which is JSON.
+void take(const nlohmann::json& project, SlicerSettings& settings) {
+  for (const nlohmann::json& object : member(project, "objects")) {
+    const std::uint64_t id = count_of(member(object, "id"));
+    for (const nlohmann::json& volume : member(object, "volumes"))
+      settings.parts[{id, count_of(member(volume, "id"))}] = text_of(member(volume, "type"));
+    for (const nlohmann::json& instance : member(object, "instances")) {
+      if (member(instance, "printable") == false && member(instance, "ord").is_number_unsigned())
+        settings.unprinted.insert(count_of(member(instance, "ord")));
+    }
+  }
+}
+
+// Reads settings in XML, or in JSON. Returns what is wrong with them, if they are damaged.
+std::optional<std::string> take(const std::string& text, bool is_json, SlicerSettings& settings) {
+  if (is_json) {
+    try {
+      take(file::parse_json(text), settings);
+    } catch (const Error& fault) {
+      return std::string("it is ") + fault.problem();
+    }
+    return std::nullopt;
+  }
+  std::uint64_t object = 0;
+  return read_xml(text, {[&](const XmlElement& element) { take(element, object, settings); }, {}});
+}
+
 }  // namespace
 
 ThreemfRole role_of(const std::string& word) {
@@ -49,14 +79,12 @@ ThreemfRole role_of(const std::string& word) {
 SlicerSettings slicer_settings(ZipArchive& archive, const std::string& name) {
   SlicerSettings settings;
   for (const std::string path :
-       {"Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"}) {
+       {"Metadata/Slic3r_PE_model.config", "Metadata/SuperSlicer_model.config",
+        "Metadata/model_settings.config", "Metadata/PrusaSlicer3_project.json"}) {
     if (!archive.has(path)) continue;
     const auto text = archive.unpacked(path);
-    std::uint64_t object = 0;
-    const auto fault =
-        text ? read_xml(*text,
-                        {[&](const XmlElement& element) { take(element, object, settings); }, {}})
-             : "it cannot be unpacked";
+    const auto fault = text ? take(*text, path.ends_with(".json"), settings)
+                            : std::optional<std::string>("it cannot be unpacked");
     if (!fault) continue;
     refuse("the slicer's settings '" + path + "', which tell what is solid, are damaged: " + *fault,
            name, "save it again, or export it as STL");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +22,11 @@ ThreemfRole role_of(const std::string& word);
 struct SlicerSettings {
   // Volumes by the object of the main model, as PrusaSlicer and those after it tell.
   std::map<std::uint64_t, std::vector<ThreemfVolume>> volumes;
-  // Roles by the object and the object of one of its components, as Bambu Studio and OrcaSlicer
-  // tell.
+  // Roles by the object and the object of one of its components, as Bambu Studio, OrcaSlicer and
+  // PrusaSlicer 3 tell.
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> parts;
+  // Items of the build, by their order, that are not to be printed, as PrusaSlicer 3 tells.
+  std::set<std::uint64_t> unprinted;
 };
 
 // Reads the settings in the archive, if there are any. Throws Error(refused) with the file's name

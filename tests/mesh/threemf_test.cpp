@@ -266,7 +266,57 @@ TEST_F(Threemf, CurasMeshesThatAreNoSolidAreLeftOut) {
                                    "<settings xmlns=\"x\"><setting key=\"" + key +
                                        "\">True</setting></settings>" + mesh_of(cube(3, 10)));
     expect_volume(package(object(1, 1) + old, item(1) + item(2)), 1, key);
+    const auto setting = [&](const std::string& value) {
+      return "<metadatagroup><metadata name=\"cura:" + key + "\">" + value +
+             "</metadata></metadatagroup>";
+    };
+    const std::string group =
+        object(3, "", setting("True") + "<components>" + component(2) + "</components>");
+    expect_volume(package(object(1, 1) + object(2, 3) + group, item(1) + item(3)), 1, key);
+    const auto placed = [&](const std::string& value) {
+      return package(object(1, 1) + object(2, 3, "", 10),
+                     item(1) + "<item objectid=\"2\">" + setting(value) + "</item>");
+    };
+    expect_volume(placed("1"), 1, key);
+    expect_volume(placed("0"), 28);
   }
+  // What the package or a finished object tells is of no other.
+  const std::string stray =
+      "<metadatagroup><metadata name=\"cura:support_mesh\">True</metadata></metadatagroup>";
+  expect_volume(package(object(1, 1) + stray, item(1) + stray), 1);
+}
+
+TEST_F(Threemf, PrusaSlicer3sVolumesThatAreNoSolidAreLeftOut) {
+  const auto content = [](const std::string& project) {
+    const auto holding = [](int id, int below) {
+      return object(id, "", "<components>" + component(below) + "</components>");
+    };
+    const std::string both =
+        object(5, "", "<components>" + component(3) + component(4) + "</components>");
+    return package(object(1, 1) + object(2, 3, "", 10) + holding(3, 1) + holding(4, 2) + both,
+                   item(5) + item(1, R"(transform="1 0 0 0 1 0 0 0 1 40 0 0")"),
+                   {{"Metadata/PrusaSlicer3_project.json", project}});
+  };
+  const auto project = [](const std::string& type, const std::string& printable) {
+    return R"({"objects":[{"id":5,"volumes":[{"id":3,"type":"ModelPart"},{"id":4,"type":")" + type +
+           R"("}],"instances":[{"ord":0,"printable":true},{"ord":1,"printable":)" + printable +
+           "}]}]}";
+  };
+  expect_volume(content(project("ModelPart", "true")), 29);
+  for (const std::string type : {"ParameterModifier", "SupportEnforcer", "SupportBlocker"})
+    expect_volume(content(project(type, "true")), 2, "left out as no part of the solid: " + type);
+  expect_volume(content(project("ModelPart", "false")), 28, "solid: not printable");
+  expect_refusal(content(project("NegativeVolume", "true")), "which would have to be cut away");
+  expect_volume(content(R"({"objects":7})"), 29);
+  for (const std::string& damaged :
+       {std::string(R"({"objects")"), std::string(), std::string(10000, '[')})
+    expect_refusal(content(damaged), "which tell what is solid, are damaged");
+}
+
+TEST_F(Threemf, SuperSlicersSettingsAreThoseOfPrusaSlicer) {
+  ZippedFile settings = prusa(metadata("volume_type", "ParameterModifier"));
+  settings.path = "Metadata/SuperSlicer_model.config";
+  expect_volume(package(two_cubes(), item(1), {settings}), 1, "ParameterModifier");
 }
 
 TEST_F(Threemf, ObjectsOfOtherPartsOfThePackageAreRead) {
@@ -292,6 +342,18 @@ TEST_F(Threemf, ObjectsOfOtherPartsOfThePackageAreRead) {
   expect_refusal(content(model(object(7, 1), "")), "it has no object 1, which is placed");
 }
 
+TEST_F(Threemf, PartsThatAreEncryptedAreNamed) {
+  const std::string path = R"(p:path="/3D/Secret.model")";
+  const auto content = [&](const std::string& listed) {
+    return package(object(1, 1), item(1) + item(2, path),
+                   {{"3D/Secret.model", "\x01\x02\xFF"},
+                    {"Secure/keystore.xml", "<keystore><resourcedatagroup><resourcedata path=\"" +
+                                                listed + "\"/></resourcedatagroup></keystore>"}});
+  };
+  expect_refusal(content("/3D/Secret.model"), "its model part '/3D/Secret.model' is encrypted");
+  expect_refusal(content("/3D/other.model"), "XML of its model is damaged");
+}
+
 TEST_F(Threemf, OtherPartsOfThePackageAreLeftAlone) {
   const std::string noise = std::string("\x89PNG\r\n\x1a\n", 8) + "<<<&\xFF";
   std::vector<ZippedFile> files;
@@ -313,6 +375,13 @@ TEST_F(Threemf, OtherPartsOfThePackageAreLeftAlone) {
 
 TEST_F(Threemf, SizesOfSixtyFourBitsAreRead) {
   expect_volume(zip({{"a.txt", "a"}, main_model(model(object(1, 1), item(1)))}, true), 1);
+}
+
+TEST_F(Threemf, WhatAnObjectHasBesideItsMeshIsSaid) {
+  const std::string vendors = "<v:hint xmlns:v=\"urn:v\"><v:part/></v:hint>";
+  expect_volume(package(object(1, "", mesh_of(cube(1)) + vendors), item(1)), 1,
+                "an object has 'hint', which is not applied");
+  expect_refusal(package(object(1, "", vendors), item(1)), "one of its objects is of 'hint'");
 }
 
 TEST_F(Threemf, ShapesThatAreNoMeshAreRefusedByName) {
