@@ -69,12 +69,78 @@ bool have_low_bytes(std::span<const float> values) {
   return kSome * low > measured;
 }
 
-// True if both bytes of all values are the same, as where 8 bits were widened to 16.
-bool are_of_equal_bytes(std::span<const float> values) {
-  constexpr int kBothBytes = 257;
-  return std::ranges::all_of(values, [](float value) {
-    return !is_value(value) || static_cast<std::uint16_t>(value) % kBothBytes == 0;
-  });
+// Returns the different values of 16 bits, the smallest first, but for the marker 65535.
+std::vector<double> different_values(std::span<const float> values) {
+  constexpr double kMarker = 65535;
+  std::vector<double> different;
+  for (const float value : values)
+    if (is_value(value) && value < kMarker) different.push_back(value);
+  std::ranges::sort(different);
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  return different;
+}
+
+constexpr double kLevels = 255;       // that 8 bits have, beside 0
+constexpr std::size_t kFewTell = 32;  // levels that are on a scale by chance, at most
+constexpr double kWide = 8;           // units: narrower steps are met by any value
+constexpr double kRounding = 1;       // of a level, in units
+
+// Returns the step of which all values are multiples, up to the 255th, if that is no step of a
+// sensor: not a whole number of units, or one of 5 cm or more. Returns 0 if there is none.
+double even_step(std::span<const double> values, double units_per_metre) {
+  constexpr double kCoarse = 0.05;  // m
+  for (double top = kFewTell; top <= kLevels; ++top) {
+    const double step = values.back() / top, whole = std::round(step);
+    const auto is_multiple = [&](double of, double rounding) {
+      return [=](double v) { return std::abs(v - std::round(v / of) * of) <= rounding; };
+    };
+    if (step < kWide) return 0;
+    if (!std::ranges::all_of(values, is_multiple(step, kRounding))) continue;
+    const bool is_whole = std::ranges::all_of(values, is_multiple(whole, 0));
+    return !is_whole ? step : whole >= kCoarse * units_per_metre ? whole : 0;
+  }
+  return 0;
+}
+
+// Returns the factor from each level to the next, if all values are on such a scale of at most 255
+// steps. Returns 0 if there is none. Small values do not tell, since rounding hides their steps.
+double even_factor(std::span<const double> values) {
+  constexpr double kSmall = 256;        // units
+  constexpr double kTells = 2 * kWide;  // units: step beside which a quarter of it is no rounding
+  const auto from =
+      static_cast<std::size_t>(std::ranges::lower_bound(values, kSmall) - values.begin());
+  const std::span<const double> large = values.subspan(from);
+  if (large.size() < kFewTell) return 0;
+  const double range = std::log(large.back() / large.front());
+  for (double steps = kFewTell; steps < kLevels; ++steps) {
+    const double step = range / steps;
+    std::size_t telling = 0;
+    const bool is_scale = std::ranges::all_of(large, [&](double v) {
+      telling += v * step >= kTells;
+      const double level = std::round(std::log(large.back() / v) / step);
+      return std::abs(v - large.back() * std::exp(-level * step)) <= kRounding + v * step / 4;
+    });
+    if (is_scale && telling >= kFewTell) return std::exp(step);
+  }
+  return 0;
+}
+
+// Returns a warning about values on a scale that 8 bits have once they are spread to 16, evenly or
+// by a logarithm.
+Remarks eight_bit_suspicion(std::span<const float> values,
+                            const std::optional<double>& units_per_metre) {
+  constexpr double kUsual = 1000;  // units per metre
+  const std::vector<double> different = different_values(values);
+  if (different.size() < kFewTell || static_cast<double>(different.size()) > kLevels) return {};
+  const double step = even_step(different, units_per_metre.value_or(kUsual));
+  const double factor = step > 0 ? 0 : even_factor(different);
+  if (step == 0 && factor == 0) return {};
+  return {
+      {true, (step > 0 ? "all values are multiples of " + number_text(std::round(100 * step) / 100)
+                       : "each value is " + number_text(std::round(10000 * factor) / 10000) +
+                             " times the one below") +
+                 ", as 8 bits are that were widened to 16; if so, give the image that they "
+                 "were made of"}};
 }
 
 // True if the exchanged bytes give millimetres that sensors reach, and the values are beyond them.
@@ -193,8 +259,8 @@ Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
                      "; if they are rotated by three bits, " + cure}};
 }
 
-// Returns a warning about 16-bit values of which one byte is not used, that look rotated by three
-// bits, or like a Kinect's raw disparity.
+// Returns a warning about 16-bit values of which one byte is not used, that look widened from 8
+// bits, rotated by three, or like a Kinect's raw disparity.
 Remarks coding_suspicions(std::span<const float> values, std::size_t width,
                           const std::optional<double>& units_per_metre) {
   constexpr float kLargestDisparity = 2047;  // marks pixels without any
@@ -203,11 +269,8 @@ Remarks coding_suspicions(std::span<const float> values, std::size_t width,
              "all values are multiples of 256, like those of 8 bits; if their bytes stand in the "
              "other order, give `decode` swapped"}};
   }
-  if (has_many_values(values) && are_of_equal_bytes(values)) {
-    return {{true,
-             "all values are multiples of 257, as 8 bits are that were widened to 16; if so, give "
-             "the image that they were made of"}};
-  }
+  if (Remarks widened = eight_bit_suspicion(values, units_per_metre); !widened.empty())
+    return widened;
   if (Remarks rotated = rotation_suspicion(values, width, units_per_metre); !rotated.empty())
     return rotated;
   std::size_t measured = 0, marked = 0;

@@ -182,14 +182,59 @@ TEST(DepthValues, SwappedBytesAreTheOnlyCauseThatIsSaid) {
   EXPECT_TRUE(look_coded);
 }
 
+// Expects the one warning that values were widened from 8 bits.
+void expect_widened(const std::vector<float>& values, const DepthReading& reading,
+                    const std::string& how) {
+  const Metres read = metres(image_of(values, 320, true), reading);
+  ASSERT_EQ(read.remarks.size(), 1U) << how;
+  EXPECT_TRUE(says(read.remarks[0].text, "8 bits")) << how << ": " << read.remarks[0].text;
+}
+
 TEST(DepthValues, EightBitsThatWereWidenedAreSaid) {
-  for (const float factor : {256.F, 257.F}) {
-    std::vector<float> values = corridor(50, 250, 320 * 20);
-    for (float& value : values) value *= factor;
-    const Metres read = metres(image_of(values, 320, true));
-    ASSERT_EQ(read.remarks.size(), 1U) << factor;
-    EXPECT_TRUE(says(read.remarks[0].text, "8 bits")) << read.remarks[0].text;
+  const std::vector<float> bytes = corridor(50, 250, 320 * 20);
+  for (const float factor :
+       {256.F, 257.F, 255.F, 100.F, 10000 / 255.F, 5000 / 255.F, 60000 / 255.F})
+    for (const bool is_rounded : {true, false}) {
+      std::vector<float> values = bytes;
+      for (float& value : values)
+        value = is_rounded ? std::round(factor * value) : std::floor(factor * value);
+      expect_widened(values, {}, std::to_string(factor));
+    }
+  std::vector<float> fine = bytes;  // steps of 255 units of .2 mm
+  for (float& value : fine) value *= 255;
+  expect_widened(fine, {.units_per_metre = 5000}, "5000");
+  for (const auto& [near, far] : {std::pair{1., 10000.}, {100., 10000.}, {300., 20000.}}) {
+    std::vector<float> values = bytes;
+    for (float& value : values)
+      value = static_cast<float>(std::round(near * std::pow(far / near, value / 255.)));
+    expect_widened(values, {}, "by a logarithm");
   }
+}
+
+TEST(DepthValues, FewValuesAreNotAlwaysOfEightBits) {
+  constexpr std::size_t kCount = 320 * 20;
+  for (const auto& [near, far] : {std::pair{400, 1200}, {800, 4000}, {2500, 9500}, {5000, 9500}}) {
+    // Steps of a Kinect, of a stereo camera with whole disparities, and of centimetres.
+    for (const double disparities : {348000., 87000., 70000., 2e6}) {
+      std::vector<float> values = corridor(near, far, kCount);
+      for (float& value : values)
+        value = static_cast<float>(std::round(disparities / std::round(disparities / value)));
+      EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty())
+          << near << " " << disparities;
+    }
+    for (const double step : {5., 10., 20., 40.}) {
+      std::vector<float> values = corridor(near, far, kCount);
+      for (float& value : values) value = static_cast<float>(step * std::round(value / step));
+      EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty()) << near << " " << step;
+    }
+  }
+  std::vector<float> tenths = corridor(800, 4000, kCount);  // of millimetres, in centimetres
+  for (float& value : tenths) value = 100 * std::round(value / 10);
+  EXPECT_TRUE(metres(image_of(tenths, 320, true), {.units_per_metre = 10000}).remarks.empty());
+  std::vector<float> ramp(kCount);  // a program's evenly rising rows
+  for (std::size_t k = 0; k < kCount; ++k)
+    ramp[k] = std::round(1000 + 4000 / 119.F * static_cast<float>(k / 64));
+  EXPECT_TRUE(metres(image_of(ramp, 64, true)).remarks.empty());
 }
 
 TEST(DepthValues, MultiplesOfEightAreNotAlwaysRotated) {

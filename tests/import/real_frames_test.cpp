@@ -56,6 +56,7 @@ TEST_P(RealFrame, BecomesASoundCloud) {
   options.depth.units_per_metre = frame.units_per_metre;
   const ImportedCloud imported = import_cloud(file::read_all(path), path, options);
   validate(imported.cloud, path);
+  for (const Remark& remark : imported.remarks) EXPECT_FALSE(remark.is_warning) << remark.text;
   EXPECT_EQ(imported.width, frame.width);
   EXPECT_EQ(imported.height, frame.height);
   EXPECT_EQ(frame.width * frame.height - imported.invalid, frame.measured);
