@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Tests that three.js reads what vpm-normals --export writes.
+"""Tests that other programs read what vpm-normals --export writes.
 
-    cloud_exports_test.py BIN
+    cloud_exports_test.py BIN three.js|PCL
 
-BIN is the folder of the tools. Needs Node.js and three.js, of which Debian has both; skipped, which
-is said, without them. Exit status: 0 if all is read as it was written, 1 otherwise, 77 skipped.
+BIN is the folder of the tools. Needs Node.js and three.js, or the tools of PCL, of which Debian has
+all; skipped, which is said, without them. Exit status: 0 if all is read as it was written, 1
+otherwise, 77 skipped.
 """
 import json
 import math
@@ -86,12 +87,45 @@ def check(name, pose, read, note):
         assert facing < 0, (name, k, n)
 
 
+def read_by_three(folder, files):
+    """Returns positions and normals of each file as three.js reads them."""
+    read = subprocess.run(["node", "three_reads.mjs", *files], cwd=folder, capture_output=True, text=True)
+    assert read.returncode == 0, read.stderr
+    return json.loads(read.stdout)
+
+
+def run_pcl(folder, *command):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    said = (done.stdout + done.stderr).replace("Failed to find match for field 'curvature'", "")  # which clouds seldom have
+    assert done.returncode == 0 and "Failed" not in said, (command, done.stdout, done.stderr)
+
+
+def read_by_pcl(folder, files):
+    """Returns positions and normals of each file as PCL reads them into points of the type PointNormal."""
+    clouds = []
+    for file in files:
+        if file.endswith(".ply"):
+            run_pcl(folder, "pcl_ply2pcd", file, "any.pcd")
+        # A motion is applied to PointNormal, others are copied as bytes.
+        run_pcl(folder, "pcl_transform_point_cloud", "any.pcd" if file.endswith(".ply") else file, "moved.pcd", "-trans", "0,0,0")
+        run_pcl(folder, "pcl_convert_pcd_ascii_binary", "moved.pcd", "text.pcd", "0")
+        header, _, rows = (folder / "text.pcd").read_text().partition("DATA ascii\n")
+        fields = next(line.split()[1:] for line in header.splitlines() if line.startswith("FIELDS"))
+        points = [dict(zip(fields, map(float, row.split()))) for row in rows.splitlines()]
+        clouds.append({"positions": [p[c] for p in points for c in "xyz"],
+                       "normals": [p["normal_" + c] for p in points for c in "xyz"]})
+    return clouds
+
+
 def main():
-    if shutil.which("node") is None:
-        skip("no Node.js (Debian: nodejs)")
+    reader = sys.argv[2]
+    needed = "node" if reader == "three.js" else "pcl_ply2pcd"
+    if shutil.which(needed) is None:
+        skip(f"no {needed} (Debian: {'nodejs' if reader == 'three.js' else 'pcl-tools'})")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        place_three(folder)
+        if reader == "three.js":
+            place_three(folder)
         write_depth(folder / "wall.pfm")
         written = []
         for number, pose in enumerate(POSES):
@@ -102,12 +136,10 @@ def main():
                                        "--export", f"{number}{out}"], cwd=folder, capture_output=True, text=True)
                 assert done.returncode == 0, done.stderr
                 written.append((f"{number}{out}", pose, done.stderr))
-        read = subprocess.run(["node", "three_reads.mjs", *[entry[0] for entry in written]], cwd=folder,
-                              capture_output=True, text=True)
-        assert read.returncode == 0, read.stderr
-        for (file, pose, note), points in zip(written, json.loads(read.stdout)):
+        read = (read_by_three if reader == "three.js" else read_by_pcl)(folder, [entry[0] for entry in written])
+        for (file, pose, note), points in zip(written, read):
             check(file, pose, points, note)
-        print(f"three.js read {len(written)} files as they were written")
+        print(f"{reader} read {len(written)} files as they were written")
 
 
 if __name__ == "__main__":
