@@ -5,8 +5,9 @@
 
 The page's blocks marked ```sh are run by bash in a new folder that holds the files of make-example, and must succeed. A result that
 the page shows ('{"pose": ...}', "…" stands for any text) must be a line of the file results.jsonl that they leave. For the page of a
-TOOL, every long option of `TOOL --help` must stand in its section "Options" and the reverse, and it must have the sections of a man
-page in their order. Exit status: 0 if all holds, 1 otherwise.
+TOOL, every long option of `TOOL --help-all` must stand in its section "Options" and the reverse, and it must have the sections of a
+man page in their order. `--help` must be a part of `--help-all`, of lines of at most 100 characters, with three examples that the tool
+takes, and both have the page's exit codes. Exit status: 0 if all holds, 1 otherwise.
 """
 import argparse
 import os
@@ -18,6 +19,7 @@ import tempfile
 
 SECTIONS = ["Synopsis", "Description", "Options", "Which options go together", "Examples", "Exit status", "See also"]
 LONGEST_SECONDS = 600
+LONGEST_LINE = 100
 
 
 def sections_of(page):
@@ -26,9 +28,12 @@ def sections_of(page):
     return dict(zip(parts[1::2], parts[2::2]))
 
 
-def options_of_help(tool, environment):
-    text = subprocess.run([tool, "--help"], env=environment, capture_output=True, text=True, check=True).stdout
-    return set(re.findall(r"^ +(?:-\w,)?(--[a-z][a-z-]*)", text, flags=re.MULTILINE))
+def said(command, environment):
+    return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True).stdout
+
+
+def options_of_help(text):
+    return set(re.findall(r"^  (?:-\w, )?(--[a-z][a-z-]*)", text, flags=re.MULTILINE))
 
 
 def options_of_page(section):
@@ -61,11 +66,34 @@ def option_faults(tool, page, environment):
     if [name for name in sections if name in SECTIONS] != SECTIONS:
         yield f"the page's sections are {', '.join(sections)}; needed are {', '.join(SECTIONS)} in this order"
         return
-    of_help, of_page = options_of_help(tool, environment), options_of_page(sections["Options"])
+    of_help, of_page = options_of_help(said([tool, "--help-all"], environment)), options_of_page(sections["Options"])
     for option in sorted(of_help - of_page):
-        yield f"{option} stands in --help but not in the page's options"
+        yield f"{option} stands in --help-all but not in the page's options"
     for option in sorted(of_page - of_help):
-        yield f"{option} stands in the page's options but not in --help"
+        yield f"{option} stands in the page's options but not in --help-all"
+
+
+def help_faults(tool, page, environment):
+    """Yields what is wrong with --help and --help-all."""
+    short, full = (said([tool, option], environment) for option in ("--help", "--help-all"))
+    for line in (short + full).splitlines():
+        if len(line) > LONGEST_LINE:
+            yield f"a line of help has {len(line)} characters: {line}"
+    if not options_of_help(short) < options_of_help(full) or len(short) >= len(full):
+        yield "--help is not a part of --help-all"
+    examples = re.findall(rf"^  ({tool} .*)$", short.split("\nExamples:\n")[1], flags=re.MULTILINE)
+    if len(examples) != 3:
+        yield f"--help has {len(examples)} examples"
+    for example in examples:
+        done = subprocess.run(["bash", "-c", example.replace(tool, f"{tool} --dump-config", 1)], env=environment,
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            yield f"{tool} does not take an example of its help: {example}\n{done.stderr}"
+    of_page = re.findall(r"^\| (\d+) \|", sections_of(page)["Exit status"], flags=re.MULTILINE)
+    for text in (short, full):
+        codes = re.findall(r"^  (\d+) ", text.split("\nExit codes:\n")[1], flags=re.MULTILINE)
+        if codes != of_page:
+            yield f"exit codes of help are {', '.join(codes)}, of the page {', '.join(of_page)}"
 
 
 def main():
@@ -79,6 +107,7 @@ def main():
     found = list(example_faults(page, environment))
     if options.tool:
         found += option_faults(options.tool, page, environment)
+        found += help_faults(options.tool, page, environment)
     print("\n".join(f"{options.page}: {fault}" for fault in found))
     sys.exit(1 if found else 0)
 

@@ -17,19 +17,24 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("suite", a.suite, "Suite to run: " + suite_names());
+  tools::begin_group(app, "Suites");
   app.add_option(
          "--out", a.folder,
          "Write SUITE.json and SUITE.csv into this folder, which is made if the one above is there")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("FOLDER");
   app.add_flag("--quick", a.quick, "Run a small version that takes seconds");
   app.add_flag("--all", a.all,
                "accuracy: take every tool, scene and kind of cloud; packing, scaling: go up to a "
                "million spheres");
   app.add_option("--meshes", a.meshes,
-                 "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
+                 "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply")
+      ->option_text("FOLDER");
   app.add_option("--data", a.data,
                  "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; "
-                 "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames");
+                 "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames")
+      ->option_text("FOLDER");
+  tools::begin_group(app, "Accuracy", tools::Group::rare);
   app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")
       ->check(tools::whole_number_in(0, 1 << 30))
       ->capture_default_str();
@@ -89,6 +94,11 @@ int main(int argc, char** argv) {
   vpm::tools::Program program("vpm-bench", "Measure accuracy and speed; write JSON and CSV");
   vpm::bench::Arguments arguments;
   declare(program.app(), arguments);
+  program.show_examples({
+      "vpm-bench accuracy --quick --out bench",
+      "vpm-bench extremes --quick --device cpu --out bench",
+      "vpm-bench packing --quick --out bench",
+  });
   program.computes_on_devices();
   return program.run(argc, argv, [&] { run(program, arguments); });
 }

@@ -55,9 +55,11 @@ void declare_axes(CLI::App& app, ImportArguments& a) {
 }
 
 void declare_values(CLI::App& app, ImportArguments& a) {
+  begin_group(app, "How values are read");
   app.add_option(
-      "--depth-scale", a.depth_scale,
-      "Units of the file per metre; if not given, 1000 for integers and 1 for floats and points");
+         "--depth-scale", a.depth_scale,
+         "Units of the file per metre; if not given, 1000 for integers and 1 for floats and points")
+      ->option_text("S");
   app.add_option("--unit", a.unit, "Unit of the file instead: m, cm, mm, um, in or ft")
       ->check(CLI::IsMember({"m", "cm", "mm", "um", "in", "ft"}));
   app.add_option("--invalid", a.invalid,
@@ -66,7 +68,7 @@ void declare_values(CLI::App& app, ImportArguments& a) {
                  "none: 0 only")
       ->join(',')
       ->type_name("FLOAT")
-      ->option_text("VALUES");
+      ->option_text("V,...");
   app.add_option("--range", a.range, "Take depths from NEAR to FAR metres only: near,far")
       ->join(',')
       ->type_name("FLOAT")
@@ -78,14 +80,17 @@ void declare_values(CLI::App& app, ImportArguments& a) {
                  "Undo a coding of 16-bit values: rotated (SUN3D, APC), disparity (raw Kinect, "
                  "NYU), swapped bytes, or big-endian: a PGM's bytes as its standard says, which "
                  "otherwise are looked at")
-      ->join(',');
+      ->join(',')
+      ->option_text("HOW");
   app.add_option("--channel", a.channel,
-                 "Channel of an OpenEXR image that holds depth, if its name does not tell");
+                 "Channel of an OpenEXR image that holds depth, if its name does not tell")
+      ->option_text("NAME");
   app.add_flag("--flip", a.flip,
                "Turn the normals of points around: they must point into free space");
 }
 
 void declare_normals(CLI::App& app, ImportArguments& a) {
+  begin_group(app, "Normals", Group::rare);
   app.add_option("--method", a.method,
                  "Estimate normals by inverse-depth, or by pca as printed in 2017")
       ->check(CLI::IsMember({"inverse-depth", "pca"}))
@@ -97,7 +102,8 @@ void declare_normals(CLI::App& app, ImportArguments& a) {
   app.add_option(
          "--edge-gate", a.edge_gate,
          "Largest relative difference of inverse depth within one surface; 0 finds no edges")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("F");
 }
 
 std::optional<double> units_per_metre(const ImportArguments& a) {
@@ -180,10 +186,11 @@ void declare_camera(CLI::App& app, ImportArguments& a) {
                  "JSON)")
       ->join(',')
       ->type_name("FLOAT")
-      ->option_text("TX,TY,TZ,QX,QY,QZ,QW or FILE");
+      ->option_text("POSE or FILE");
 }
 
 void declare(CLI::App& app, ImportArguments& a) {
+  begin_group(app, "Camera and its frame");
   declare_camera(app, a);
   declare_axes(app, a);
   declare_values(app, a);

@@ -105,26 +105,41 @@ std::string check_device(const std::string& text) {
 
 Program::Program(const std::string& name, const std::string& purpose)
     : name_(name), app_(purpose, name) {
-  app_.set_version_flag("--version", name + " " VPM_VERSION);
-  app_.config_formatter(std::make_shared<JsonConfig>());
-  app_.set_config("--config", "", "Read options from a JSON file; the command line wins")
-      ->transform([](const std::string& path) { return path == "-" ? "/dev/stdin" : path; });
-  app_.allow_config_extras(false);
-  app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
-      ->configurable(false);
+  app_.formatter(help_);
+  declare_common();
+  declare_configurations();
+  begin_group(app_, "Options");
+}
+
+void Program::declare_common() {
+  begin_group(app_, kCommonGroup);
   app_.add_option("--device", common_.device,
-                  "Compute on cpu, cuda, cuda:N, cuda:all, or auto, which is cuda where there is a "
-                  "device")
+                  "Where to compute; auto is cuda where there is a device. Never changes a result")
+      ->option_text("auto|cpu|cuda|cuda:N|cuda:all")
       ->check(check_device)
       ->capture_default_str();
   app_.add_option("--threads", common_.threads,
                   "Use this many threads; 0 is one per core. Never changes a result")
       ->check(whole_number_in(0, 4096))
       ->capture_default_str();
+  app_.add_flag("--force", common_.force, "Overwrite outputs whatever they are now, even inputs");
   app_.add_flag("--quiet", common_.quiet,
                 "Print no notes and no progress; warnings and errors are still printed");
+  app_.set_help_flag("-h,--help", "Print what is used most, and stop");
+  app_.set_help_all_flag("--help-all", "Print all options, and stop");
+}
+
+void Program::declare_configurations() {
+  begin_group(app_, kConfigGroup, Group::rare);
+  app_.set_version_flag("--version", name_ + " " VPM_VERSION, "Print the version, and stop");
+  app_.config_formatter(std::make_shared<JsonConfig>());
+  app_.set_config("--config", "", "Read options from a JSON file; the command line wins")
+      ->option_text("FILE")
+      ->transform([](const std::string& path) { return path == "-" ? "/dev/stdin" : path; });
+  app_.allow_config_extras(false);
+  app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
+      ->configurable(false);
   app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
-  app_.add_flag("--force", common_.force, "Overwrite outputs whatever they are now, even inputs");
 }
 
 // Reads the command line. False if it asked for the configuration, which is printed then.
@@ -153,7 +168,9 @@ bool Program::parse(int argc, char** argv) {
 int Program::run(int argc, char** argv, const std::function<void()>& job) {
   end_of_early_failures();
   if (!on_devices_)
-    app_.get_option("--device")->description("auto or cpu; " + name_ + " computes on the CPU only");
+    app_.get_option("--device")
+        ->option_text("auto|cpu")
+        ->description(name_ + " computes on the CPU only");
   open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {

@@ -6,12 +6,15 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libvpm/file/kind.h"
+#include "tools/common/help.h"
 
 namespace vpm::tools {
 
@@ -38,6 +41,15 @@ class Program {
   // Returns the device that --device names. Throws Error(unavailable) if this machine lacks it.
   Device device() const { return device_from_text(common_.device); }
 
+  // Ends both helps with these commands, which use the files of the pages' examples.
+  void show_examples(std::vector<std::string> commands) {
+    help_->set_examples(std::move(commands));
+  }
+  // Tells both helps of an exit code beyond those of all programs.
+  void show_exit_code(int code, std::string meaning) {
+    help_->add_exit_code(code, std::move(meaning));
+  }
+
   // Parses the command line and runs `job`. Turns every error into a message on standard error and
   // returns the exit code.
   int run(int argc, char** argv, const std::function<void()>& job);
@@ -59,12 +71,15 @@ class Program {
  private:
   bool parse(int argc, char** argv);
   std::string config_name() const;
+  void declare_common();
+  void declare_configurations();
   void refuse_values_of_flags(int argc, char** argv) const;
   void refuse_senseless_values() const;
   void print(const char* kind, const std::string& text) const;
 
   std::string name_;
   CLI::App app_;
+  std::shared_ptr<Help> help_ = std::make_shared<Help>();
   CommonOptions common_;
   bool dump_config_ = false;
   bool on_devices_ = false;

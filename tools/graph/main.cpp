@@ -33,26 +33,31 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("packing", a.packing, "Packing (.vpmp); - is standard input")->required();
+  begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output, "Tool model to write (.vpmg); - is standard output")
       ->required();
-  app.add_option("--mesh", a.mesh, "Refuse the packing unless it was made of this mesh");
-  app.add_option(
-         "--epsilon", a.options.epsilon,
-         "Join spheres whose gap is at most this, metres; a tenth of the smallest radius if "
-         "not given")
-      ->check(positive_number());
-  app.add_option("--levels", a.options.levels,
-                 "Make further levels of detail with these sphere counts, e.g. 250,1000,4000")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(whole_number_in(1, std::numeric_limits<std::uint32_t>::max()));
-  app.add_flag("--calibrate", a.calibrate,
-               "Measure each level's error against the solid and keep it in the model, for "
-               "vpm-query --max-error");
   app.add_option("--report", a.report, "Write facts about the model here (JSON)");
   app.add_option("--view", a.view,
                  "Write a page (.html) here that shows spheres, edges, bridges and cells of each "
                  "level in a browser");
+  begin_group(app, "Model");
+  app.add_option("--mesh", a.mesh, "Refuse the packing unless it was made of this mesh")
+      ->option_text("MESH");
+  app.add_option(
+         "--epsilon", a.options.epsilon,
+         "Join spheres whose gap is at most this, metres; a tenth of the smallest radius if "
+         "not given")
+      ->check(positive_number())
+      ->option_text("E");
+  app.add_option("--levels", a.options.levels,
+                 "Make further levels of detail with these sphere counts, e.g. 250,1000,4000")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(whole_number_in(1, std::numeric_limits<std::uint32_t>::max()))
+      ->option_text("N,N,...");
+  app.add_flag("--calibrate", a.calibrate,
+               "Measure each level's error against the solid and keep it in the model, for "
+               "vpm-query --max-error");
 }
 
 // Returns the options by which vpm-pack read the mesh, so that reading it again gives the same
@@ -136,5 +141,10 @@ int main(int argc, char** argv) {
   Program program("vpm-graph", "Make a tool model for penetration queries from a sphere packing");
   Arguments arguments;
   declare(program.app(), arguments);
+  program.show_examples({
+      "vpm-graph tool.vpmp -o tool.vpmg",
+      "vpm-graph tool.vpmp -o levels.vpmg --levels 30,100 --calibrate   # for --max-error",
+      "vpm-graph tool.vpmp -o seen.vpmg --mesh tool.off --view graph.html   # to look at",
+  });
   return program.run(argc, argv, [&] { run(program, arguments); });
 }

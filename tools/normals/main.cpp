@@ -26,22 +26,25 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("depth", a.depth,
                  "Depth image (16-bit PNG, OpenEXR, TIFF, PGM, PFM, NPY) or cloud (PCD, PLY); - is "
                  "standard input. Or a recording: a folder of such files");
+  begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output,
                  "Cloud to write (.vpmc); - is standard output. For a recording, the folder of its "
                  "clouds, for vpm-query --frames");
+  app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
+  app.add_option("--export", a.export_path, "Write the points with normals here too: .ply or .pcd");
+  app.add_option("--view", a.view,
+                 "Write a page (.html) here that shows surface, normals and unset pixels in a "
+                 "browser");
   declare(app, a.import);
+  begin_group(app, "Recordings", Group::rare);
   app.add_option("--camera-poses", a.camera_poses,
                  "For a recording, the path of the camera: TUM text or a pose per frame; else "
                  "NAME.pose.txt beside the frames, or groundtruth.txt");
   app.add_option("--frame-rate", a.frame_rate,
                  "Frames per second of a recording whose names have numbers but no times")
       ->check(number_in(1e-3, 1e6))
-      ->capture_default_str();
-  app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
-  app.add_option("--export", a.export_path, "Write the points with normals here too: .ply or .pcd");
-  app.add_option("--view", a.view,
-                 "Write a page (.html) here that shows surface, normals and unset pixels in a "
-                 "browser");
+      ->capture_default_str()
+      ->option_text("R");
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
@@ -157,5 +160,10 @@ int main(int argc, char** argv) {
                   "Make a cloud with normals from a depth image or another program's cloud");
   Arguments arguments;
   declare(program.app(), arguments);
+  program.show_examples({
+      "vpm-normals depth.png -o scene.vpmc --intrinsics 525,525,319.5,239.5 --depth-scale 5000",
+      "vpm-normals scene.ply -o points.vpmc   # points of another program",
+      "vpm-normals frames -o clouds --intrinsics camera.txt --depth-scale 5000   # a recording",
+  });
   return program.run(argc, argv, [&] { run(program, arguments); });
 }

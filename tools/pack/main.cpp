@@ -54,28 +54,36 @@ struct Arguments {
 
 // Adds the options that say which spheres are wanted.
 void declare_spheres(CLI::App& app, Arguments& a) {
+  begin_group(app, "Spheres");
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")
       ->check(whole_number_in(1, kMostSpheres))
       ->capture_default_str();
   app.add_option("--coverage", a.coverage, "Stop at this fraction of the solid's volume, 0 to 1")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("F");
+  app.add_flag("--grow", a.grow,
+               "Let all spheres grow and move together afterwards, which raises the coverage");
+  begin_group(app, "Which spheres", Group::rare);
   app.add_option(
          "--inertia-error", a.inertia_error,
          "Stop when the inertia tensor (at equal mass, about the solid's centre of mass) differs "
          "from the solid's by at most this fraction, e.g. 0.01")
-      ->check(positive_number());
+      ->check(positive_number())
+      ->option_text("F");
   app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, metres")
-      ->capture_default_str();
-  app.add_option("--max-radius", a.max_radius, "Place no larger sphere, metres");
-  app.add_flag("--grow", a.grow,
-               "Let all spheres grow and move together afterwards, which raises the coverage");
+      ->capture_default_str()
+      ->option_text("R");
+  app.add_option("--max-radius", a.max_radius, "Place no larger sphere, metres")->option_text("R");
   app.add_option("--for-scene", a.for_scene,
                  "Cloud (.vpmc): place no spheres smaller than its points resolve, and none larger "
-                 "than its curvature allows");
+                 "than its curvature allows")
+      ->option_text("CLOUD");
 }
 
 // Adds the options that say what is told of the spheres, and where.
 void declare_reports(CLI::App& app, Arguments& a) {
+  begin_group(app, "Outputs");
+  app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
   app.add_flag("--validate", a.validate,
                "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
   app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
@@ -88,18 +96,17 @@ void declare_reports(CLI::App& app, Arguments& a) {
       "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
       "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
-                 "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
+                 "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given")
+      ->option_text("NAME");
 }
 
 // Adds the options that say how the mesh is taken.
 void declare_mesh(CLI::App& app, Arguments& a) {
-  app.add_option("--node", a.node,
-                 "Read only this node of a COLLADA, glTF, 3MF or FBX file, with those below it");
+  begin_group(app, "Mesh");
   a.scale_option =
       app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
-          ->capture_default_str();
-  app.add_option("--weld", a.weld,
-                 "Join vertices nearer than this fraction of the mesh's diagonal (STL: 1e-9)");
+          ->capture_default_str()
+          ->option_text("S");
   app.add_option("--repair", a.repair,
                  "Repair an open mesh. holes, which is meant if no value follows, fills planar and "
                  "small holes. voxel[=RES] makes a new surface around the places that the mesh "
@@ -107,21 +114,29 @@ void declare_mesh(CLI::App& app, Arguments& a) {
                  "flood[=RES] makes one around the places that cannot be reached from outside "
                  "through holes up to --max-hole")
       ->expected(0, 1)
-      ->default_str("holes");
+      ->default_str("holes")
+      ->option_text("[holes|voxel|flood]");
+  begin_group(app, "More of the mesh", Group::rare);
+  app.add_option("--node", a.node,
+                 "Read only this node of a COLLADA, glTF, 3MF or FBX file, with those below it")
+      ->option_text("NAME");
+  app.add_option("--weld", a.weld,
+                 "Join vertices nearer than this fraction of the mesh's diagonal (STL: 1e-9)")
+      ->option_text("F");
   app.add_option(
          "--max-hole", a.max_hole,
          "Refuse meshes with wider holes, metres; with --repair voxel or flood, where flood "
          "takes 1/16 of the longest side if it is not given")
-      ->check(positive_number());
+      ->check(positive_number())
+      ->option_text("W");
 }
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option(
       "mesh", a.mesh,
       "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard input");
-  app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
-  declare_spheres(app, a);
   declare_reports(app, a);
+  declare_spheres(app, a);
   declare_mesh(app, a);
 }
 
@@ -370,6 +385,11 @@ int main(int argc, char** argv) {
   Program program("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
   Arguments arguments;
   declare(program.app(), arguments);
+  program.show_examples({
+      "vpm-pack tool.off -o tool.vpmp --spheres 1000",
+      "vpm-pack tool.off --spheres 50 --grow --export tool.yml --link gripper   # for cuRobo",
+      "vpm-pack tool.off -o open.vpmp --scale 0.001 --repair voxel   # millimetres, open",
+  });
   std::string holes = "--repair=holes";
   std::vector<char*> words = with_plain_repair(argc, argv, holes);
   return program.run(argc, words.data(), [&] { run(program, arguments); });

@@ -54,25 +54,46 @@ void declare_gone_options(CLI::App& app) {
 }
 
 void declare_inputs(CLI::App& app, Arguments& a) {
+  begin_group(app, "Inputs");
   app.add_option("--tool", a.tools,
                  "Tool model (.vpmg), or a mesh, which is packed with 1000 spheres. Given several "
                  "times, every pose is asked of every tool; lines "
                  "then have the field tool, from 0")
-      ->allow_extra_args(false);
-  app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)");
+      ->allow_extra_args(false)
+      ->option_text("MODEL");
+  app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)")->option_text("CLOUD");
   app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw")
       ->join(',')
       ->type_name("FLOAT")
-      ->option_text("TX,TY,TZ,QX,QY,QZ,QW");
+      ->option_text("POSE");
   app.add_option("--poses", a.poses, "File of poses: JSON Lines, TUM text or 4x4 text");
+  app.add_option(
+         "--frames", a.replay.frames,
+         "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
+         "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
+         "lines; goes with --trajectory")
+      ->option_text("FOLDER");
+}
+
+void declare_requests(CLI::App& app, Arguments& a) {
+  begin_group(app, "How it is asked");
+  app.add_option(
+         "--batch", a.batch,
+         "Poses that a device takes at once; answers come in their order. Changes no result")
+      ->check(whole_number_in(1, 1 << 20))
+      ->capture_default_str();
+  app.add_flag("--serve", a.serve,
+               "Answer requests on standard input, one line of JSON for each, until it ends");
 }
 
 void declare_measure(CLI::App& app, Arguments& a) {
+  begin_group(app, "What is measured");
   app.add_option("--measure", a.measure, "refined, or paper (as printed in 2017)")
       ->check(CLI::IsMember({"refined", "paper"}))
       ->capture_default_str();
   app.add_option("--stiffness", a.stiffness,
-                 "N/m^3: scales force and torque; without, or 1, they are in m^3 and m^4");
+                 "N/m^3: scales force and torque; without, or 1, they are in m^3 and m^4")
+      ->option_text("K");
   app.add_option("--shadows", a.shadows,
                  "What counts of places that a depth image does not show: those near behind what "
                  "it shows, or all: solid")
@@ -85,20 +106,24 @@ void declare_measure(CLI::App& app, Arguments& a) {
 }
 
 void declare_level(CLI::App& app, Arguments& a) {
+  begin_group(app, "Level of detail", Group::rare);
   app.add_option("--level", a.level, "Spheres to use: one of the model's levels; 0 is the finest")
       ->check(whole_number_in(0, std::numeric_limits<std::uint32_t>::max()))
       ->capture_default_str();
   app.add_option("--max-error", a.max_error,
                  "Use the coarsest level with at most this error by its calibration: 0.5% or "
-                 "0.005 of the tool's volume");
+                 "0.005 of the tool's volume")
+      ->option_text("E");
   app.add_option("--deadline-us", a.deadline_us,
                  "Use the finest level that answers in this many microseconds here; results then "
-                 "depend on the machine's speed. Wins over --max-error and --for-scene");
+                 "depend on the machine's speed. Wins over --max-error and --for-scene")
+      ->option_text("T");
   app.add_flag("--for-scene", a.for_scene,
                "Use the finest level without spheres that the cloud's points cannot resolve");
 }
 
 void declare_motion(CLI::App& app, Arguments& a) {
+  begin_group(app, "Poses that follow each other", Group::rare);
   app.add_flag(
       "--coherent", a.coherent,
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
@@ -106,30 +131,30 @@ void declare_motion(CLI::App& app, Arguments& a) {
   app.add_option("--coupling", a.coupling,
                  "Take --poses or --trajectory for those of a haptic device that holds the tool by "
                  "a spring and "
-                 "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
+                 "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness")
+      ->option_text("VALUES");
 }
 
 void declare_frames(CLI::App& app, ReplayArguments& a) {
-  app.add_option(
-      "--frames", a.frames,
-      "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
-      "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
-      "lines; goes with --trajectory");
+  begin_group(app, "Recorded frames", Group::rare);
   app.add_option("--trajectory", a.trajectory,
                  "Path of the tool through the frames, as for --poses");
   app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
-      ->check(number_in(1, 1e6));
+      ->check(number_in(1, 1e6))
+      ->option_text("R");
   app.add_option("--camera-poses", a.camera_poses,
                  "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
                  "frames, or groundtruth.txt");
   app.add_option("--frame-rate", a.frame_rate,
                  "Frames per second, where their names have numbers but no times")
       ->check(number_in(1e-3, 1e6))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("R");
   app.add_option("--frame-latency", a.frame_latency,
                  "Seconds from the time of a frame until a step can see it")
       ->check(number_in(0, 3600))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("T");
   app.add_flag("--align-starts", a.align_starts,
                "Path and frames begin together, whatever their times say");
   app.add_flag("--repeat-frames", a.repeat_frames,
@@ -140,6 +165,7 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
 }
 
 void declare_outputs(CLI::App& app, Arguments& a) {
+  begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output, "Results: JSON Lines, or CSV if the name ends in .csv")
       ->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
@@ -163,18 +189,12 @@ void check_spheres_path(const std::string& path) {
 
 void declare(CLI::App& app, Arguments& a) {
   declare_inputs(app, a);
+  declare_outputs(app, a);
+  declare_requests(app, a);
   declare_measure(app, a);
   declare_level(app, a);
   declare_motion(app, a);
-  app.add_option(
-         "--batch", a.batch,
-         "Poses that a device takes at once; answers come in their order. Changes no result")
-      ->check(whole_number_in(1, 1 << 20))
-      ->capture_default_str();
-  app.add_flag("--serve", a.serve,
-               "Answer requests on standard input, one line of JSON for each, until it ends");
   declare_frames(app, a.replay);
-  declare_outputs(app, a);
   declare_gone_options(app);
 }
 

@@ -34,6 +34,11 @@ int main(int argc, char** argv) {
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   declare(program.app(), arguments);
+  program.show_examples({
+      "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",
+      "vpm-query --tool tool.off --cloud scene.vpmc --poses poses.jsonl -o results.csv",
+      "vpm-query --tool tool.vpmg --frames clouds --trajectory path.txt -o steps.jsonl",
+  });
   program.computes_on_devices();
   return program.run(argc, argv, [&] { run(program, arguments); });
 }

@@ -28,7 +28,7 @@ $ vpm-normals - -o - --intrinsics 60,60,31.5,23.5 < wall.png | vpm-query --tool 
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --threads 1 < path.txt | cmp - result.jsonl
 
 # Configurations keep their schemas, and give the same call again.
-$ for t in pack graph normals query bench; do for o in $(vpm-$t --help | sed -nE 's/^ +(-.,)?--([a-z-]+).*/\2/p' | grep -vE '^(help|version|config|dump-config)$'); do grep -q "\"$o\"" $(dirname $VALIDATE)/../../formats/schemas/config.vpm-$t.json || echo vpm-$t --$o; done; done
+$ for t in pack graph normals query bench; do for o in $(vpm-$t --help-all | sed -nE 's/^  (-., )?--([a-z-]+).*/\2/p' | grep -vE '^(help|help-all|version|config|dump-config)$'); do grep -q "\"$o\"" $(dirname $VALIDATE)/../../formats/schemas/config.vpm-$t.json || echo vpm-$t --$o; done; done
 $ for t in pack graph normals query bench; do vpm-$t --dump-config > $t.json && $VALIDATE config.vpm-$t $t.json; done
 $ vpm-graph cube.vpmp -o again.vpmg --levels 50 --dump-config > call.json && $VALIDATE config.vpm-graph call.json && vpm-graph --config call.json && cmp again.vpmg cube.vpmg
 $ vpm-normals wall.png -o again.vpmc --intrinsics 60,60,31.5,23.5 --dump-config > call.json && $VALIDATE config.vpm-normals call.json && vpm-normals --config call.json && cmp again.vpmc wall.vpmc
