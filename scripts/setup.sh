@@ -16,7 +16,7 @@ packages=(
   libglu1-mesa-dev libassimp-dev libexpat1-dev
   libjs-three python3 python3-numpy python3-matplotlib
 )
-test_packages=(libgtest-dev python3-jsonschema pybind11-dev python3-dev python3-pytest python3-venv)
+test_packages=(libgtest-dev pkg-config python3-jsonschema pybind11-dev python3-dev python3-pytest python3-venv)
 
 say() { printf '\n== %s\n' "$*"; }
 

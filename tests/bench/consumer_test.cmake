@@ -1,6 +1,6 @@
-# Installs vpm, builds examples/consumer against the installation, and runs it and the installed executables. Run by ctest
-# with -DBUILD=, -DGENERATOR=, -DSOURCE=, -DWORK=. It takes the build's generator: CMake's default needs make, which need not
-# be installed.
+# Installs vpm, builds examples/consumer against the installation, by CMake and by pkg-config, and runs it and the installed
+# executables. Run by ctest with -DBUILD=, -DGENERATOR=, -DSOURCE=, -DWORK=, -DCXX=. It takes the build's generator: CMake's default
+# needs make, which need not be installed.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -29,7 +29,37 @@ run(${WORK}/build/control-loop ${SOURCE}/formats/golden/v1/cube.vpmg)
 if(NOT output MATCHES "at most [0-9.]*[1-9][0-9.]* % of the tool inside, [0-9.]*[1-9][0-9.]* N felt")
   message(FATAL_ERROR "unexpected answer: ${output}")
 endif()
-# What is installed besides the libraries, the executables and CMake's package files are the public headers.
+# The same by pkg-config, which finds the libraries from the place of its own files.
+find_program(pkg_config NAMES pkg-config pkgconf)
+if(pkg_config)
+  set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/lib/pkgconfig)
+  run(${pkg_config} --cflags --libs vpm_solid)
+  string(STRIP "${output}" flags)
+  separate_arguments(flags)
+  run(${CXX} -std=c++20 -O0 ${SOURCE}/examples/consumer/mesh_to_answer.cpp ${flags} -Wl,-rpath,${WORK}/prefix/lib -o ${WORK}/by-pkg-config)
+  run(${WORK}/by-pkg-config ${inputs}/cube.off ${inputs}/wall.png 60,60,31.5,23.5 0,0,1,0,0,0,1)
+  if(NOT output MATCHES "^volume 0\\.00[34][0-9]* m.3 .(49|50)")
+    message(FATAL_ERROR "unexpected answer: ${output}")
+  endif()
+else()
+  message("pkg-config is not there: its files are not checked")
+endif()
+# Pages, completions, formats, licence and examples are there, and no file names the folder of the build.
+foreach(file share/man/man1/vpm-query.1.gz share/bash-completion/completions/vpm-query share/zsh/site-functions/_vpm-query
+    share/fish/vendor_completions.d/vpm-query.fish share/vpm/formats/README.md share/vpm/formats/schemas/query-result.json
+    share/doc/vpm/LICENSE share/doc/vpm/examples/consumer/CMakeLists.txt)
+  if(NOT EXISTS ${WORK}/prefix/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+file(GLOB_RECURSE texts ${WORK}/prefix/lib/cmake/* ${WORK}/prefix/lib/pkgconfig/* ${WORK}/prefix/share/*)
+foreach(text ${texts})
+  file(STRINGS ${text} named REGEX "${BUILD}|${SOURCE}")
+  if(named)
+    message(FATAL_ERROR "${text} names this machine's folders: ${named}")
+  endif()
+endforeach()
+# What is installed besides is the public headers.
 file(GLOB_RECURSE headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
 file(GLOB public RELATIVE ${SOURCE}/libvpm/include ${SOURCE}/libvpm/include/vpm/*)
 if(NOT headers STREQUAL public)
