@@ -27,12 +27,17 @@ is_of_the_machine() {
 }
 
 mkdir -p "$folder/lib"
+plugins=()  # loaded when they are first needed
+for name in libvpm_voxels.so libvpm_mesh_plugin.so; do
+  [[ ! -e $build/lib/$name ]] || plugins+=("$build/lib/$name")
+done
+[[ ${#plugins[@]} -eq 0 ]] || install -m 755 "${plugins[@]}" "$folder/lib/"
 for name in "${names[@]}"; do
   cmake --install "$build" --component "$name" --prefix "$folder" --strip >/dev/null
   [[ -x $folder/bin/$name ]] || { echo "bundle.sh: $build has nothing to install as '$name'" >&2; exit 1; }
   while read -r library; do
     is_of_the_machine "$library" || install -m 755 "$library" "$folder/lib/"
-  done < <(ldd "$build/bin/$name" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
+  done < <(ldd "$build/bin/$name" "${plugins[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u)
 done
 strip --strip-unneeded "$folder"/lib/*
 cuda=$(sed -n 's/^CMAKE_CUDA_ARCHITECTURES:[A-Z]*=//p' "$build/CMakeCache.txt")

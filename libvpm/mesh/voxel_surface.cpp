@@ -1,22 +1,18 @@
 #include "libvpm/mesh/voxel_surface.h"
 
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/VolumeToMesh.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/mesh/voxel_library.h"
 
 namespace vpm {
 namespace {
 
-constexpr int kBlock = 8;   // edge of OpenVDB's leaves
+constexpr int kBlock = VoxelBlock::kEdge;
 constexpr int kMargin = 4;  // voxels around the box; more than the band
-
-using Block = std::array<float, kBlock * kBlock * kBlock>;
 
 // Lattice of voxels; voxel (i, j, k) has its centre at low + voxel * (i, j, k).
 struct Lattice {
@@ -36,54 +32,33 @@ struct Lattice {
   Vec3 at(double i, double j, double k) const { return low + voxel * Vec3{i, j, k}; }
 };
 
-float everywhere_in_block(const VoxelField& field, const Lattice& lattice, openvdb::Coord origin) {
+void sample(const VoxelField& field, const Lattice& lattice, VoxelBlock& block) {
+  const auto at = [&](double i, double j, double k) {
+    return lattice.at(block.origin[0] + i, block.origin[1] + j, block.origin[2] + k);
+  };
   constexpr double kHalf = 0.5 * (kBlock - 1);
-  return field.everywhere(lattice.at(origin.x() + kHalf, origin.y() + kHalf, origin.z() + kHalf),
-                          0.5 * kBlock * lattice.voxel);
-}
-
-Block values_of_block(const VoxelField& field, const Lattice& lattice, openvdb::Coord origin) {
-  Block values{};
+  block.everywhere = field.everywhere(at(kHalf, kHalf, kHalf), 0.5 * kBlock * lattice.voxel);
+  if (block.everywhere != 0) return;
   std::size_t n = 0;
   for (int i = 0; i < kBlock; ++i) {
     for (int j = 0; j < kBlock; ++j) {
-      for (int k = 0; k < kBlock; ++k)
-        values[n++] = field.at(lattice.at(origin.x() + i, origin.y() + j, origin.z() + k));
+      for (int k = 0; k < kBlock; ++k) block.values[n++] = field.at(at(i, j, k));
     }
   }
-  return values;
 }
 
-openvdb::FloatGrid::Ptr sample(const VoxelField& field, const Lattice& lattice) {
-  std::vector<openvdb::Coord> origins;
+std::vector<VoxelBlock> sampled(const VoxelField& field, const Lattice& lattice) {
+  std::vector<VoxelBlock> blocks;
   for (int i = 0; i < lattice.blocks[0]; ++i) {
     for (int j = 0; j < lattice.blocks[1]; ++j) {
       for (int k = 0; k < lattice.blocks[2]; ++k)
-        origins.emplace_back(kBlock * i, kBlock * j, kBlock * k);
+        blocks.push_back({{kBlock * i, kBlock * j, kBlock * k}});
     }
   }
-  std::vector<float> everywhere(origins.size());
-  std::vector<Block> values(origins.size());
-  parallel_for(origins.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      everywhere[b] = everywhere_in_block(field, lattice, origins[b]);
-      if (everywhere[b] == 0) values[b] = values_of_block(field, lattice, origins[b]);
-    }
+  parallel_for(blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) sample(field, lattice, blocks[b]);
   });
-  auto grid = openvdb::FloatGrid::create(kVoxelBand);
-  for (std::size_t b = 0; b < origins.size(); ++b) {
-    const openvdb::CoordBBox box = openvdb::CoordBBox::createCube(origins[b], kBlock);
-    if (everywhere[b] != 0) {
-      if (everywhere[b] < 0) grid->fill(box, everywhere[b], false);
-      continue;
-    }
-    auto* const leaf = grid->tree().touchLeaf(origins[b]);
-    for (openvdb::Index n = 0; n < leaf->SIZE; ++n) {
-      leaf->setValueOnly(n, values[b][n]);
-      leaf->setActiveState(n, std::abs(values[b][n]) < kVoxelBand);
-    }
-  }
-  return grid;
+  return blocks;
 }
 
 }  // namespace
@@ -105,17 +80,13 @@ VoxelBox box_of_mesh(const Solid& mesh, int voxels_along_longest_side) {
 
 Solid voxel_surface(const VoxelField& field, const VoxelBox& box) {
   const Lattice lattice(box);
-  openvdb::initialize();
-  std::vector<openvdb::Vec3s> points;
-  std::vector<openvdb::Vec3I> triangles;
-  std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(*sample(field, lattice), points, triangles, quads, 0.0, 0.0);
+  const VoxelFaces faces = voxel_library().zero_surface(sampled(field, lattice), kVoxelBand);
   Solid solid;
-  for (const openvdb::Vec3s& p : points)
-    solid.vertices.push_back(lattice.at(double{p.x()}, double{p.y()}, double{p.z()}));
-  for (const openvdb::Vec3I& t : triangles) solid.triangles.push_back({t[0], t[1], t[2]});
-  for (const openvdb::Vec4I& q : quads) {
-    const auto length = [&](int a, int b) {
+  for (const Vec3f& p : faces.points)
+    solid.vertices.push_back(lattice.at(double{p.x}, double{p.y}, double{p.z}));
+  solid.triangles = faces.triangles;
+  for (const std::array<std::uint32_t, 4>& q : faces.quads) {
+    const auto length = [&](std::size_t a, std::size_t b) {
       return squared_norm(solid.vertices[q[a]] - solid.vertices[q[b]]);
     };
     if (length(0, 2) <= length(1, 3)) {

@@ -1,4 +1,4 @@
-// Zero surfaces of sampled fields, by OpenVDB.
+// Zero surfaces of sampled fields.
 #pragma once
 
 #include "libvpm/model/solid.h"
@@ -31,7 +31,7 @@ struct VoxelBox {
 VoxelBox box_of_mesh(const Solid& mesh, int voxels_along_longest_side);
 
 // Returns a closed, oriented surface; empty if nothing is inside. Identical for any number of
-// threads.
+// threads. Throws Error(unavailable) without the library of voxels (voxel_library.h).
 Solid voxel_surface(const VoxelField& field, const VoxelBox& box);
 
 }  // namespace vpm

@@ -1,11 +1,9 @@
 #include "libvpm/packing/validation.h"
 
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
 #include "libvpm/mesh/triangle_bvh.h"
+#include "libvpm/mesh/voxel_library.h"
 #include "libvpm/mesh/winding_number.h"
 
 namespace vpm {
@@ -73,21 +72,10 @@ Lattice lattice_of(const Solid& solid, int voxels) {
 // Shells of equal depth and orientation, voxelised together. OpenVDB fills whatever cannot be
 // reached from outside, so shells within others need grids of their own.
 struct ShellGroup {
-  std::vector<openvdb::Vec3I> triangles;
+  std::vector<Triangle> triangles;
   int sign = 1;  // -1 for cavities
-  openvdb::FloatGrid::Ptr distances;
+  std::unique_ptr<VoxelDistances> distances;
 };
-
-// Returns the signed distances from triangles of the points given, in voxels. These types are those
-// that libopenvdb holds compiled; others take the compiler a minute here.
-openvdb::FloatGrid::Ptr distances_of(const std::vector<openvdb::Vec3s>& points,
-                                     const std::vector<openvdb::Vec3I>& triangles) {
-  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(points,
-                                                                                        triangles);
-  openvdb::util::NullInterrupter never;
-  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-      never, mesh, *openvdb::math::Transform::createLinearTransform(1.0), kBand, kBand);
-}
 
 std::vector<ShellGroup> voxelise(const Solid& solid, const Lattice& lattice) {
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
@@ -100,17 +88,13 @@ std::vector<ShellGroup> voxelise(const Solid& solid, const Lattice& lattice) {
     const ShellPlace& place = places[shell[t]];
     ShellGroup& group = by_place[{place.depth, place.outward}];
     group.sign = place.outward ? 1 : -1;
-    const Triangle& corners = solid.triangles[t];
-    group.triangles.emplace_back(corners[0], corners[1], corners[2]);
+    group.triangles.push_back(solid.triangles[t]);
   }
-  std::vector<openvdb::Vec3s> points;  // in voxels, exact to a part of kRounding
-  for (const Vec3& vertex : solid.vertices) {
-    const Vec3 p = lattice.to_index(vertex);
-    points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
-  }
+  std::vector<Vec3f> points;  // in voxels, exact to a part of kRounding
+  for (const Vec3& vertex : solid.vertices) points.push_back(narrow(lattice.to_index(vertex)));
   std::vector<ShellGroup> groups;
   for (auto& [place, group] : by_place) {
-    group.distances = distances_of(points, group.triangles);
+    group.distances = voxel_library().distances(points, group.triangles, kBand);
     groups.push_back(std::move(group));
   }
   return groups;
@@ -120,15 +104,14 @@ std::vector<ShellGroup> voxelise(const Solid& solid, const Lattice& lattice) {
 class Probe {
  public:
   explicit Probe(const std::vector<ShellGroup>& groups) : groups_(groups) {
-    for (const ShellGroup& group : groups)
-      accessors_.push_back(group.distances->getConstAccessor());
+    for (const ShellGroup& group : groups) readers_.push_back(group.distances->reader());
   }
   // Returns the distance to the surface in voxels, at most kBand; negative inside the solid.
-  double distance(openvdb::Coord voxel) {
+  double distance(int x, int y, int z) {
     int enclosed = 0;
     double nearest = static_cast<double>(kBand);
     for (std::size_t k = 0; k < groups_.size(); ++k) {
-      const double distance = static_cast<double>(accessors_[k].getValue(voxel));
+      const double distance = static_cast<double>(readers_[k]->at(x, y, z));
       if (distance < 0) enclosed += groups_[k].sign;
       nearest = std::min(nearest, std::abs(distance));
     }
@@ -137,7 +120,7 @@ class Probe {
 
  private:
   const std::vector<ShellGroup>& groups_;
-  std::vector<openvdb::FloatGrid::ConstAccessor> accessors_;
+  std::vector<std::unique_ptr<VoxelDistances::Reader>> readers_;
 };
 
 // Counts of one layer of voxels.
@@ -180,7 +163,7 @@ class Count {
     const bool has_mesh = is_near_mesh(x0, y0, z);
     for (int y = y0; y < std::min(y0 + kSquare, lattice_.ny); ++y) {
       for (int x = x0; x < std::min(x0 + kSquare, lattice_.nx); ++x) {
-        const double distance = probe.distance({x, y, z});
+        const double distance = probe.distance(x, y, z);
         const bool inside = distance < 0;
         if (inside) ++result.solid_voxels;
         if (std::abs(distance) < 0.5) ++result.cut_by_mesh;
@@ -282,7 +265,6 @@ Layer sum_of(const std::vector<Layer>& layers) {
 
 Validation validate_packing(const Solid& solid, const std::vector<Sphere>& spheres, int voxels) {
   const Lattice lattice = lattice_of(solid, voxels);
-  openvdb::initialize();
   const std::vector<ShellGroup> groups = voxelise(solid, lattice);
   const Count count(solid, groups, lattice, spheres);
   std::vector<Layer> layers(static_cast<std::size_t>(lattice.nz));

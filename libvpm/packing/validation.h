@@ -33,7 +33,7 @@ struct Validation {
 };
 
 // Validates a packing; protrusions are measured up to 3 voxels. Throws Error(refused) for a solid
-// without extent.
+// without extent, Error(unavailable) without the library of voxels (mesh/voxel_library.h).
 Validation validate_packing(const Solid& solid, const std::vector<Sphere>& spheres,
                             int voxels = kValidationVoxels);
 

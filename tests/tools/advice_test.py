@@ -64,9 +64,10 @@ UNTRIED = [
     ("of files that are told by their first bytes, and of depths that may be coded: tests/file, tests/recording, tests/import", [
         "save it as CSV", "unpack it first: tar xf", "extract its depth images first", "(SUN3D), or `decode` rotated",
         "and `depth_scale` 10000, which make that",
-        "all values are multiples of 257, as 8 bits are that were widened to 16; if so, give the image that they were made of",
+        ", as 8 bits are that were widened to 16; if so, give the image that they were made of",
     ]),
     ("said by a build without a library, or with CUDA", [
+        "install it beside the other libraries of vpm",
         "give the .vpmg that vpm-pack and vpm-graph make of it",
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",
         "build it where libtiff is installed, or convert the image to a 16-bit PNG", "save it as OBJ, OFF, PLY or STL",
@@ -182,7 +183,7 @@ def advice_in_sources():
         if path.parent.name == "python":  # says it to programs: tests/python
             continue
         code = re.sub(r"^\s*#.*$|(?<![:\"])//.*$", "", path.read_text(), flags=re.MULTILINE)
-        code = re.sub(r"add_(?:option|flag)\w*\([^;]*;", "", code)
+        code = re.sub(r"(?:add_(?:option|flag)\w*|show_examples)\([^;]*;", "", code)
         for literal in LITERALS.findall(code):
             text = "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', literal)).replace('\\"', '"').strip()
             if " " in text and "|" not in text and (OPTION.search(text) or ASKS.search(text)):
@@ -192,6 +193,8 @@ def advice_in_sources():
 def pattern_of(text):
     """Returns a pattern that finds a text of the sources in a message of the tools."""
     parts = re.split(r"(`[a-z_]+`|%[-+.0-9]*z?[a-z])", text)
+    while parts and (not parts[0] or parts[0][0] in "`%"):  # a pattern that begins with any text takes seconds to fail
+        parts.pop(0)
     return "".join(r"[-\w =]+" if part.startswith("`") else ".*" if part.startswith("%") else re.escape(part) for part in parts)
 
 
