@@ -39,6 +39,6 @@ for name in "${names[@]}"; do
     is_of_the_machine "$library" || install -m 755 "$library" "$folder/lib/"
   done < <(ldd "$build/bin/$name" "${plugins[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u)
 done
-strip --strip-unneeded "$folder"/lib/*
+find "$folder/lib" -type f -exec strip --strip-unneeded {} +
 cuda=$(sed -n 's/^CMAKE_CUDA_ARCHITECTURES:[A-Z]*=//p' "$build/CMakeCache.txt")
 echo "$folder: ${#names[@]} executables${cuda:+ for CUDA $cuda}, $(find "$folder/lib" -type f | wc -l) libraries, $(du -sh "$folder" | cut -f1)"

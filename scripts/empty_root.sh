@@ -5,7 +5,7 @@
 # Makes a root with debootstrap, copies the last commit into it and ../shared beside it where that exists, and runs each
 # COMMAND (a line of shell) in the copy. --device-code then lends the root this machine's CUDA, where it has one, and builds
 # the device code. VPM_CCACHE=FOLDER lends the root a cache of compilers (FOLDER is made), which a COMMAND uses that installs
-# ccache. Needs root, git, debootstrap and the right to mount.
+# ccache. VPM_PACKAGES=FOLDER copies the Debian packages there to /packages in the root. Needs root, git, debootstrap and the right to mount.
 #
 # Exit status: 77 where such a root cannot be made here, 1 where a command fails, 0 otherwise. The root is removed in any
 # case. Mounts are made in a namespace of their own and so end with its processes, also when these are killed.
@@ -35,6 +35,10 @@ fill() {
   if [[ -n ${VPM_CCACHE:-} ]]; then
     mkdir -p "$VPM_CCACHE" "$root/root/.cache/ccache"
     mount --bind "$VPM_CCACHE" "$root/root/.cache/ccache" || cannot "$VPM_CCACHE cannot be mounted"
+  fi
+  if [[ -n ${VPM_PACKAGES:-} ]]; then
+    mkdir "$root/packages"
+    cp "$VPM_PACKAGES"/*.deb "$root/packages/"
   fi
   mkdir -p "$root/src/vpm"
   git -c safe.directory='*' -C "$repository" archive HEAD | tar -x -C "$root/src/vpm" || cannot "git has no commit of $repository"

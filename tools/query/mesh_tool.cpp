@@ -41,12 +41,14 @@ class MemoryFile {
   int descriptor_;
 };
 
-// Returns the function of the plug-in, which lies where the libraries are.
+// Returns the function of the plug-in, which lies below the libraries where it
+// is installed, and beside them in a build.
 PackMesh load_plugin() {
   std::error_code fault;
   const fs::path folder = fs::read_symlink("/proc/self/exe", fault).parent_path();
   void* library = nullptr;
-  for (const fs::path& place : {folder / ".." / "lib" / kMeshPlugin, fs::path(kMeshPlugin)})
+  for (const fs::path& place :
+       {folder / ".." / "lib" / "vpm" / kMeshPlugin, folder / ".." / "lib" / kMeshPlugin})
     if (library == nullptr) library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const function = library == nullptr ? nullptr : ::dlsym(library, kPackMesh);
   if (function == nullptr)
