@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/graph/cell_pieces.h"
@@ -11,6 +12,7 @@
 #include "libvpm/graph/point_location_grid.h"
 #include "libvpm/graph/sphere_graph.h"
 #include "libvpm/mesh/outer_surface.h"
+#include "libvpm/mesh/weld.h"
 
 namespace vpm {
 namespace {
@@ -145,6 +147,14 @@ VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& leve
   return cells.quality;
 }
 
+// Keeps the boundary with equal vertices joined. Leaves it out where its pieces do not close, as of
+// some meshes that cross themselves.
+void keep_surface(Solid boundary, ToolModel& model) {
+  weld(boundary.vertices, 0, boundary.triangles);
+  drop_unused(boundary.vertices, boundary.triangles);
+  if (defect_of_surface(boundary, model).empty()) model.surface = std::move(boundary);
+}
+
 }  // namespace
 
 double samples_per_length(std::uint32_t spheres) {
@@ -156,7 +166,8 @@ double samples_per_length(std::uint32_t spheres) {
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<VoronoiQuality>* quality) {
   check(packing, options);
-  const MassProperties mass = enclosed_mass(packing.solid);
+  const Solid boundary = enclosed_surface(packing.solid);
+  const MassProperties mass = mass_properties(boundary);
   if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
   const Normalized n = normalize(packing, mass);
 
@@ -166,6 +177,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
   model.radius = bounding_radius(packing.solid, mass.center_of_mass);
   model.solid_hash = content_hash(packing.solid);
   model.spheres = packing.spheres;
+  if (options.surface) keep_surface(boundary, model);
   const auto counts = level_counts(options, static_cast<std::uint32_t>(packing.spheres.size()));
   for (const std::uint32_t count : counts) {
     Level level;

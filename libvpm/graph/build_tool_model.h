@@ -23,6 +23,8 @@ struct GraphOptions {
   double epsilon = 0;  // in metres; 0 takes a tenth of each level's smallest radius
   // Sphere counts in any order; the full packing is always added.
   std::vector<std::uint32_t> levels;
+  // Keeps the boundary of what the solid encloses (ToolModel::surface), where its pieces close.
+  bool surface = true;
   std::function<void(double fraction)> progress;
 };
 

@@ -14,6 +14,7 @@ constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
 constexpr file::ChunkId kCellVolume("SHRV"), kCellCentroid("SHRC"), kCellReach("SHRR");
 constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
 constexpr file::ChunkId kCalibration("CALB");
+constexpr file::ChunkId kSurfaceVertices("SRFV"), kSurfaceTriangles("SRFT");
 constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
 
 struct ToolRecord {
@@ -97,6 +98,11 @@ ToolModel model_of(const file::Reader& reader) {
   for (std::uint32_t k = 0; k < records.size(); ++k)
     model.levels.push_back(level_of(records[k], reader, k));
   if (reader.has(kCalibration, 0)) model.calibration = reader.read<LevelError>(kCalibration, 0);
+  if (reader.has(kSurfaceVertices, 0) || reader.has(kSurfaceTriangles, 0)) {
+    model.surface = {reader.read<Vec3>(kSurfaceVertices, 0),
+                     reader.read<Triangle>(kSurfaceTriangles, 0)};
+    if (model.surface.triangles.empty()) reader.refuse_file("its surface has no triangles");
+  }
   validate(model, reader.name());
   return model;
 }
@@ -162,6 +168,10 @@ void write_tool_model(const std::string& path, const ToolModel& model, const Sol
   writer.add(kLevels, 0, std::span(std::as_const(records)));
   for (std::uint32_t k = 0; k < model.levels.size(); ++k) add_level(writer, model.levels[k], k);
   if (!model.calibration.empty()) writer.add(kCalibration, 0, std::span(model.calibration));
+  if (!model.surface.triangles.empty()) {
+    writer.add(kSurfaceVertices, 0, std::span(model.surface.vertices));
+    writer.add(kSurfaceTriangles, 0, std::span(model.surface.triangles));
+  }
   if (!mesh.triangles.empty()) add_mesh(writer, mesh, model.center_of_mass);
   writer.write(path);
 }

@@ -96,12 +96,19 @@ struct ToolModel {
   std::vector<Sphere> spheres;          // largest first
   std::vector<Level> levels;            // at least one, ascending by sphere_count
   std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
+  // Closed triangles that bound the solid, each once, in the mesh's frame; empty if not kept.
+  // Overlaps with other solids need them.
+  Solid surface;
   file::Provenance provenance;
 
   // Returns the level with this many spheres, or the finest for 0. Throws Error(invalid_argument)
   // that lists the levels if there is none.
   const Level& level(std::uint32_t sphere_count) const;
 };
+
+// Returns why a surface is none of the tool whose volume, centre of mass and radius the model has;
+// empty if it is one.
+std::string defect_of_surface(const Solid& surface, const ToolModel& model);
 
 // Throws Error(refused) if the model breaks a rule stated above; the message names the first
 // defect. Queries of a valid model index without checks and always end. Reading and writing files

@@ -16,6 +16,8 @@ using Indices = std::vector<std::uint32_t>;
 constexpr double kSumTolerance = 1e-6;
 // Relative tolerance for spheres that touch the tool's bounding ball.
 constexpr double kReachTolerance = 1e-6;
+// Largest area vector of a surface that counts as closed, relative to the squared tool radius.
+constexpr double kSurfaceGap = 1e-9;
 // Largest distance of blocks and samples from the centre of mass, in tool radii. The fixed-point
 // sums of a query (ToolSum) allow lever arms of up to 8.
 constexpr double kFarthestPart = 2;
@@ -252,7 +254,45 @@ void check_calibration(const ToolModel& model, const std::string& name) {
   }
 }
 
+// Returns the first vertex that is not finite, or beyond the tool radius, or the first triangle of
+// vertices that are not there, as a defect; empty if there is none.
+std::string defect_of_places(const Solid& surface, const ToolModel& model) {
+  const double farthest = (1 + kReachTolerance) * model.radius;
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i)
+    if (!(norm(surface.vertices[i] - model.center_of_mass) <= farthest))
+      return "vertex " + std::to_string(i) + " of its surface lies beyond the tool radius";
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i)
+    for (const std::uint32_t vertex : surface.triangles[i])
+      if (vertex >= surface.vertices.size())
+        return "triangle " + std::to_string(i) + " of its surface names vertex " +
+               std::to_string(vertex) + ", but there are " +
+               std::to_string(surface.vertices.size());
+  return {};
+}
+
+void check_surface(const ToolModel& model, const std::string& name) {
+  if (model.surface.triangles.empty() && model.surface.vertices.empty()) return;
+  const std::string defect = defect_of_surface(model.surface, model);
+  if (!defect.empty()) refuse(defect, name, "make the tool model again with vpm-graph");
+}
+
 }  // namespace
+
+std::string defect_of_surface(const Solid& surface, const ToolModel& model) {
+  if (std::string defect = defect_of_places(surface, model); !defect.empty()) return defect;
+  Vec3 area;  // twice the integral of the normal, which is 0 for what is closed
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec3 a = surface.vertices[i];
+    area += cross(surface.vertices[j] - a, surface.vertices[k] - a);
+  }
+  if (!(norm(area) <= 2 * kSurfaceGap * model.radius * model.radius))
+    return "its surface is not closed";
+  const MassProperties mass = mass_properties(surface);
+  if (!(std::abs(mass.volume - model.volume) <= kSumTolerance * model.volume))
+    return "its surface bounds " + std::to_string(mass.volume / model.volume) +
+           " times the tool's volume";
+  return {};
+}
 
 void validate(const ToolModel& model, const std::string& name) {
   if (!(model.volume > 0) || !std::isnormal(model.volume) || !is_finite(model.center_of_mass) ||
@@ -279,6 +319,7 @@ void validate(const ToolModel& model, const std::string& name) {
     previous = count;
   }
   check_calibration(model, name);
+  check_surface(model, name);
 }
 
 }  // namespace vpm

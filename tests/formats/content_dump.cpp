@@ -85,6 +85,9 @@ json dump(const ToolModel& model) {
            {"levels", list(model.levels)},
            {"provenance", model.provenance.json()}};
   if (!model.calibration.empty()) all["calibration"] = list(model.calibration);
+  if (!model.surface.triangles.empty())
+    all["surface"] = {{"vertices", list(model.surface.vertices)},
+                      {"triangles", list(model.surface.triangles)}};
   return all;
 }
 

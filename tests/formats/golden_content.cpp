@@ -120,6 +120,12 @@ ToolModel calibrated_cube_model() {
   return model;
 }
 
+ToolModel cube_model_with_surface() {
+  ToolModel model = cube_model();
+  model.surface = cube_packing().solid;
+  return model;
+}
+
 Cloud wall_cloud() {
   CloudSensor sensor;
   sensor.camera.intrinsics = {4, 4, 1.5, 1};

@@ -41,6 +41,9 @@ TEST(Golden, ToolModel) {
 TEST(Golden, CalibratedToolModel) {
   expect_golden("calibrated.vpmg", read_tool_model, write_model, calibrated_cube_model());
 }
+TEST(Golden, ToolModelWithSurface) {
+  expect_golden("surface.vpmg", read_tool_model, write_model, cube_model_with_surface());
+}
 TEST(Golden, CloudWithSensor) {
   expect_golden("wall.vpmc", read_cloud, write_cloud, wall_cloud());
 }

@@ -81,6 +81,9 @@ def read_tool_model(header, chunks):
     if ("CALB", 0) in chunks:
         model["calibration"] = [{"mean": e[0], "p95": e[1], "worst": e[2]}
                                 for e in records(chunks["CALB", 0], "3d")]
+    if ("SRFV", 0) in chunks:
+        model["surface"] = {"vertices": records(chunks["SRFV", 0], "3d"),
+                            "triangles": records(chunks["SRFT", 0], "3I")}
     return model
 
 

@@ -223,6 +223,18 @@ void add_calibrations(std::vector<RefusedFile>& all, const std::vector<std::byte
   add("calibration_above_worst", "exceeds its own worst", Spoiled(good).set("CALB", 0, 8, 0.5));
 }
 
+void add_surfaces(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
+  const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
+    all.push_back({std::string(name) + ".vpmg", Kind::tool_model, message, spoiled.bytes()});
+  };
+  add("surface_not_finite", "vertex 2 of its surface", Spoiled(good).set("SRFV", 0, 48, kNan));
+  add("surface_beyond_reach", "vertex 0 of its surface", Spoiled(good).set("SRFV", 0, 0, -0.2));
+  add("surface_out_of_range", "triangle 1 of its surface names vertex 8",
+      Spoiled(good).set("SRFT", 0, 12, std::uint32_t{8}));
+  add("surface_open", "not closed", Spoiled(good).set("SRFT", 0, 0, std::uint32_t{2}));
+  add("surface_of_another", "times the tool's volume", Spoiled(good).set("SRFV", 0, 0, -0.09));
+}
+
 void add_clouds(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
   const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
     all.push_back({std::string(name) + ".vpmc", Kind::cloud, message, spoiled.bytes()});
@@ -248,6 +260,7 @@ std::vector<std::byte> resealed(std::vector<std::byte> bytes) {
 std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
                                        const std::vector<std::byte>& calibrated_model,
+                                       const std::vector<std::byte>& model_with_surface,
                                        const std::vector<std::byte>& cloud) {
   std::vector<RefusedFile> all;
   add_containers(all, packing);
@@ -256,6 +269,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
   add_packings(all, packing);
   add_models(all, model);
   add_calibrations(all, calibrated_model);
+  add_surfaces(all, model_with_surface);
   add_clouds(all, cloud);
   return all;
 }

@@ -92,6 +92,7 @@ TEST_P(DamagedFile, EveryChangedByteUnderRightChecksumsIsReadOrRefused) {
 INSTANTIATE_TEST_SUITE_P(Golden, DamagedFile,
                          testing::Values(GoldenFile{"cube.vpmp", "packing"},
                                          GoldenFile{"cube.vpmg", "tool model"},
+                                         GoldenFile{"surface.vpmg", "tool model"},
                                          GoldenFile{"wall.vpmc", "cloud"},
                                          GoldenFile{"scattered.vpmc", "cloud"}),
                          [](const auto& instance) { return test::test_name(instance.param.name); });

@@ -33,6 +33,7 @@ ToolModel scaled(ToolModel m, double by) {
   m.volume *= cubed;
   m.center_of_mass = by * m.center_of_mass;
   m.radius *= by;
+  for (Vec3& v : m.surface.vertices) v = by * v;
   for (Sphere& s : m.spheres) s = {by * s.center, by * s.radius};
   for (Level& level : m.levels) {
     level.epsilon *= by;
@@ -110,6 +111,31 @@ TEST(BuildToolModel, FillsSoundLevelsOfPrefixes) {
     EXPECT_NEAR(sum / model.volume, 1, 1e-12);
     EXPECT_EQ(level.bridges, level.components_before - 1);
   }
+}
+
+// Two cubes of edge 1 that overlap by a quarter of one: the surface bounds both together, once.
+TEST(BuildToolModel, KeepsTheBoundaryOfWhatACrossingMeshEncloses) {
+  Packing packing = test::greedy_packing(test::cube(), 1, 8000);
+  const MassProperties one = mass_properties(packing.solid);
+  const Solid cube = packing.solid;
+  const double side = std::cbrt(one.volume);
+  const auto first = static_cast<std::uint32_t>(cube.vertices.size());
+  for (const Vec3& v : cube.vertices)
+    packing.solid.vertices.push_back(v + side * Vec3{0.5, 0.5, 0.013});
+  for (const auto& [a, b, c] : cube.triangles)
+    packing.solid.triangles.push_back({a + first, b + first, c + first});
+  const ToolModel model = build_tool_model(packing, {});
+  EXPECT_NO_THROW(validate(model, "model"));
+  ASSERT_FALSE(model.surface.triangles.empty());
+  EXPECT_NEAR(mass_properties(model.surface).volume / one.volume, 2 - 0.25 * (1 - 0.013), 1e-12);
+}
+
+TEST(BuildToolModel, LeavesTheSurfaceOutIfAsked) {
+  const Packing packing = test::greedy_packing(test::cube(), 10, 8000);
+  GraphOptions options;
+  options.surface = false;
+  EXPECT_TRUE(build_tool_model(packing, options).surface.triangles.empty());
+  EXPECT_EQ(build_tool_model(packing, {}).surface.triangles, packing.solid.triangles);
 }
 
 TEST(BuildToolModel, RefusesASolidThatIsOpen) {

@@ -49,6 +49,17 @@ TEST(ToolModel, UnsoundModelsAreNotWritten) {
   expect_refused("missing share", [](ToolModel& m) { m.levels[1].cell_volume.pop_back(); });
   expect_refused("orphaned samples", [](ToolModel& m) { m.levels[1].samples.push_back({}); });
   expect_refused("empty grid", [](ToolModel& m) { m.levels[1].grid.nz = 0; });
+  expect_refused("surface of another volume", [](ToolModel& m) {
+    m.surface = golden::cube_packing().solid;
+    m.surface.vertices[0] = {-0.09, -0.1, -0.1};
+  });
+  expect_refused("open surface", [](ToolModel& m) {
+    m.surface = golden::cube_packing().solid;
+    m.surface.triangles.pop_back();
+  });
+  expect_refused("vertices without triangles", [](ToolModel& m) {
+    m.surface.vertices = {{0, 0, 0}};
+  });
   expect_refused("sphere of another level", [](ToolModel& m) { m.levels[0].grid.spheres[3] = 5; });
 }
 

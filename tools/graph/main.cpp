@@ -28,7 +28,7 @@ namespace {
 struct Arguments {
   std::string packing, output, mesh, report, view;
   GraphOptions options;
-  bool calibrate = false;
+  bool calibrate = false, no_surface = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -58,6 +58,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--calibrate", a.calibrate,
                "Measure each level's error against the solid and keep it in the model, for "
                "vpm-query --max-error");
+  app.add_flag("--no-surface", a.no_surface,
+               "Leave the solid's surface out of the model, which then is smaller but cannot be "
+               "measured against solids");
 }
 
 // Returns the options by which vpm-pack read the mesh, so that reading it again gives the same
@@ -116,11 +119,16 @@ void run(const Program& program, Arguments& a) {
 
   Progress progress("levels", program.common());
   a.options.progress = [&](double fraction) { progress.update(fraction); };
+  a.options.surface = !a.no_surface;
   std::vector<VoronoiQuality> quality;
   const auto start = std::chrono::steady_clock::now();
   ToolModel model = build_tool_model(packing, a.options, &quality);
   if (a.calibrate) model.calibration = calibrate(model, packing.solid);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (a.options.surface && model.surface.triangles.empty())
+    program.warn(a.packing +
+                 ": the pieces of its crossing surface do not close, so the model keeps none and "
+                 "cannot be measured against solids; pack the mesh with --repair voxel for that");
   model.provenance.json() = {{"tool", program.name()},
                              {"version", VPM_VERSION},
                              {"parameters", program.parameters()},

@@ -13,6 +13,13 @@ $ python3 -c "import json; r = json.load(open('report.json')); print(r['spheres'
 $ python3 -c "import json; r = json.load(open('report.json')); print(max(abs(l['share_sum'] / r['volume'] - 1) for l in r['levels']) < 1e-12)"
 True
 
+# The model keeps the solid's surface, unless it is left out. Readers that do not know it pass over it, and queries
+# answer the same.
+$ vpm-graph cube.vpmp -o small.vpmg --levels 10,40,40,500 --no-surface --quiet
+$ python3 -c "import os; print(os.path.getsize('cube.vpmg') - os.path.getsize('small.vpmg') > 12 * 36, b'SRFV' in open('cube.vpmg', 'rb').read(), b'SRFV' in open('small.vpmg', 'rb').read())"
+True True False
+$ rm small.vpmg
+
 # The tool pipes, and any number of threads gives the same bytes.
 $ vpm-graph - -o - --levels 10,40,40,500 --threads 1 < cube.vpmp | cmp - cube.vpmg
 2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
