@@ -22,9 +22,15 @@ struct HandleAccess {
   }
 
   static const Cloud& held(const PointCloud& cloud) { return held_by(cloud.cloud_, "PointCloud"); }
+  // Returns the solid that a body is, or null.
+  static const PlacedSolid* solid_of(const Body& body) { return body.solid_.get(); }
+  // Returns a body that is no solid.
   static const AnyBody& held(const Body& body) { return held_by(body.body_, "Body"); }
   static const std::vector<AnyBody>& held(const Scene& scene) {
     return held_by(scene.list_, "Scene");
+  }
+  static const std::vector<PlacedSolid>& solids(const Scene& scene) {
+    return held_by(scene.solids_, "Scene");
   }
   static const ToolModel& held(const Tool& tool) { return held_by(tool.model_, "Tool"); }
   static const CheckedSolid& held(const SolidMesh& mesh) {

@@ -16,10 +16,15 @@ struct LevelQuery::Impl {
        const Scene& scene, const Pose& first_pose)
       : tools(handles.begin(), handles.end()), request(level) {
     if (tools.empty()) throw Error(ErrorKind::invalid_argument, "a query needs a tool");
+    if ((level.for_scene || level.deadline_seconds) && HandleAccess::held(scene).empty())
+      throw Error(ErrorKind::invalid_argument,
+                  "a level by scene or deadline is chosen by points, and the scene has solids only",
+                  {}, "leave that choice out, or add a cloud");
     for (const Tool& tool : tools) {
       queries.emplace_back(HandleAccess::held(tool), options, level, HandleAccess::held(scene),
                            first_pose);
       together.push_back(&queries.back().query());
+      if (!HandleAccess::solids(scene).empty()) together.back()->prepare_surface();
     }
   }
 
@@ -50,9 +55,11 @@ LevelQuery::Impl& LevelQuery::impl() const {
   return held_by(impl_, "LevelQuery");
 }
 
-Result LevelQuery::run(const Scene& scene, const Pose& pose, std::size_t tool) {
+Result LevelQuery::run(const Scene& scene, const Pose& pose, std::size_t tool,
+                       std::span<const Pose> solids) {
   LevelToolQuery& query = impl().query_of(tool);
-  const Result result = query.run(HandleAccess::held(scene), pose);
+  const Result result =
+      query.run(HandleAccess::held(scene), pose, {HandleAccess::solids(scene), solids});
   impl().seconds = query.seconds();
   return result;
 }
@@ -62,7 +69,8 @@ void LevelQuery::run(const Scene& scene, std::span<const Job> jobs, std::span<Re
     throw Error(ErrorKind::invalid_argument, "many jobs have no deadline", {},
                 "leave `deadline_seconds` out, or ask pose by pose");
   const auto start = std::chrono::steady_clock::now();
-  ToolQuery::run(impl().together, HandleAccess::held(scene), jobs, results);
+  ToolQuery::run(impl().together, HandleAccess::held(scene), jobs, results,
+                 HandleAccess::solids(scene));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   impl().seconds = jobs.empty() ? 0 : taken.count() / static_cast<double>(jobs.size());
 }
@@ -89,6 +97,10 @@ std::optional<SceneScale> LevelQuery::scale(std::size_t tool) const {
 
 std::span<const SphereState> LevelQuery::states(std::size_t tool) const {
   return impl().query_of(tool).query().states();
+}
+
+std::vector<Result> LevelQuery::parts(std::size_t tool) const {
+  return impl().query_of(tool).query().parts();
 }
 
 }  // namespace vpm

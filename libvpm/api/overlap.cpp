@@ -5,7 +5,7 @@
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/exact_pose.h"
-#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/query/solid_query.h"
 #include "libvpm/solid/solid_pair.h"
 
 namespace vpm {
@@ -23,15 +23,10 @@ void check(const SolidSurface& a, const SolidSurface& b, const OverlapOptions& o
             "make both with `with_force`, or ask without");
 }
 
-std::shared_ptr<const SolidSurface> surface_of(const SolidMesh& mesh, bool with_force) {
-  const CheckedSolid& checked = HandleAccess::held(mesh);
-  return std::make_shared<const SolidSurface>(checked.solid, checked.enclosure, with_force);
-}
-
 }  // namespace
 
-SolidBody::SolidBody(const SolidMesh& mesh, bool with_force)
-    : surface_(surface_of(mesh, with_force)) {}
+SolidBody::SolidBody(const Tool& tool, bool with_force)
+    : surface_(prepared_surface(HandleAccess::held(tool), with_force)) {}
 
 double SolidBody::volume() const {
   return HandleAccess::shared(*this)->volume();

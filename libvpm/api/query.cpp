@@ -33,12 +33,14 @@ Query::Impl& Query::impl() const {
   return held_by(impl_, "Query");
 }
 
-Result Query::run(const Scene& scene, const Pose& pose) {
-  return impl().queries.front().run(HandleAccess::held(scene), pose);
+Result Query::run(const Scene& scene, const Pose& pose, std::span<const Pose> solids) {
+  return impl().queries.front().run(HandleAccess::held(scene), pose,
+                                    {HandleAccess::solids(scene), solids});
 }
 
 void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
-  ToolQuery::run(impl().pointers, HandleAccess::held(scene), jobs, results);
+  ToolQuery::run(impl().pointers, HandleAccess::held(scene), jobs, results,
+                 HandleAccess::solids(scene));
 }
 
 void Query::forget() {
@@ -47,6 +49,10 @@ void Query::forget() {
 
 std::span<const SphereState> Query::states() const {
   return impl().queries.front().states();
+}
+
+std::vector<Result> Query::parts() const {
+  return impl().queries.front().parts();
 }
 
 std::uint32_t Query::level(std::size_t tool) const {

@@ -6,8 +6,10 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
+#include "libvpm/core/exact_pose.h"
 #include "libvpm/scene/any_body.h"
 #include "libvpm/scene/depth_frames.h"
+#include "libvpm/solid/placed_solid.h"
 
 namespace vpm {
 namespace {
@@ -60,8 +62,20 @@ std::optional<Camera> PointCloud::camera() const {
 Body::Body(const PointCloud& cloud, Denoising points)
     : body_(std::make_shared<const AnyBody>(HandleAccess::held(cloud), points)) {}
 
+Body::Body(const SolidBody& solid, const Pose& to_world)
+    : solid_(std::make_shared<const PlacedSolid>(
+          PlacedSolid{HandleAccess::shared(solid), exact_pose(to_world), 0})) {
+  if (!solid_->surface->has_depth())
+    throw Error(ErrorKind::invalid_argument, "a solid was made without what forces need", {},
+                "make it with `with_force`");
+}
+
 std::size_t Body::points() const {
-  return HandleAccess::held(*this).points();
+  return is_solid() ? 0 : HandleAccess::held(*this).points();
+}
+
+bool Body::is_solid() const {
+  return HandleAccess::solid_of(*this) != nullptr;
 }
 
 Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
@@ -69,10 +83,16 @@ Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
 Scene::Scene(std::vector<Body> bodies) {
   if (bodies.empty()) throw Error(ErrorKind::invalid_argument, "a scene needs a body");
   std::vector<AnyBody> list;
-  for (const Body& body : bodies)
-    list.push_back(HandleAccess::held(body));  // throws if it was moved from
+  std::vector<PlacedSolid> solids;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (const PlacedSolid* const solid = HandleAccess::solid_of(bodies[k]))
+      solids.push_back({solid->surface, solid->to_world, k});
+    else
+      list.push_back(HandleAccess::held(bodies[k]));  // throws if it was moved from
+  }
   bodies_ = std::make_shared<const std::vector<Body>>(std::move(bodies));
   list_ = std::make_shared<const std::vector<AnyBody>>(std::move(list));
+  solids_ = std::make_shared<const std::vector<PlacedSolid>>(std::move(solids));
 }
 
 const std::vector<Body>& Scene::bodies() const {

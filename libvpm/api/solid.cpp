@@ -14,6 +14,7 @@
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"
+#include "libvpm/solid/solid_surface.h"
 
 namespace vpm {
 namespace {
@@ -25,6 +26,11 @@ SolidMesh handle_of(const RawMesh& mesh, const SolidOptions& options) {
 // Says who made a file; the provenance of executables also has their options.
 nlohmann::json made_by_library(const char* what) {
   return {{"tool", what}, {"version", VPM_VERSION}, {"parameters", nlohmann::json::object()}};
+}
+
+std::shared_ptr<const SolidSurface> surface_of(const CheckedSolid& checked, bool with_force) {
+  const std::optional<Solid>& cut = checked.enclosure.surface;
+  return std::make_shared<const SolidSurface>(cut ? *cut : checked.solid, with_force);
 }
 
 }  // namespace
@@ -70,6 +76,9 @@ std::vector<std::string> SolidMesh::notes() const {
 std::vector<std::string> SolidMesh::warnings() const {
   return HandleAccess::held(*this).warnings;
 }
+
+SolidBody::SolidBody(const SolidMesh& mesh, bool with_force)
+    : surface_(surface_of(HandleAccess::held(mesh), with_force)) {}
 
 SpherePacking SpherePacking::read(const std::string& path) {
   return HandleAccess::make<SpherePacking>(read_packing(path));

@@ -105,6 +105,7 @@ LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& option
     QueryOptions of_level = options;
     of_level.level = tool.levels[k].sphere_count;
     queries_.emplace_back(tool, of_level);
+    queries_.back().share_surface_of(queries_.front());
   }
   if (request.deadline_seconds)
     deadline_.emplace(probe(tool, scene), *request.deadline_seconds, finest);
@@ -129,16 +130,18 @@ std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOpti
   return tool.levels.size() - 1;
 }
 
-double LevelToolQuery::timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose) {
+double LevelToolQuery::timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose,
+                                 const SolidsAt& solids) {
   const auto begin = std::chrono::steady_clock::now();
-  result_ = queries_[k].run(scene, pose);
+  result_ = queries_[k].run(scene, pose, solids);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Result LevelToolQuery::run(std::span<const AnyBody> scene, const Pose& pose) {
+Result LevelToolQuery::run(std::span<const AnyBody> scene, const Pose& pose,
+                           const SolidsAt& solids) {
   used_ = deadline_ ? deadline_->level() : 0;
   reason_ = reason_now();
-  seconds_ = timed_run(used_, scene, pose);
+  seconds_ = timed_run(used_, scene, pose, solids);
   if (deadline_) deadline_->took(std::max(seconds_, kShortest));
   return result_;
 }

@@ -64,7 +64,7 @@ class LevelToolQuery {
       : LevelToolQuery(tool, options, request, std::span(&body, 1), first_pose) {}
 
   // Returns the answer at the current level, and chooses the next level if there is a deadline.
-  Result run(std::span<const AnyBody> scene, const Pose& pose);
+  Result run(std::span<const AnyBody> scene, const Pose& pose, const SolidsAt& solids = {});
   Result run(const AnyBody& body, const Pose& pose) { return run(std::span(&body, 1), pose); }
   // Stores the answers of many jobs. Requires a request without deadline. seconds() is then the
   // mean per job.
@@ -86,7 +86,8 @@ class LevelToolQuery {
   std::size_t finest_wanted(const ToolModel& tool, const QueryOptions& options,
                             std::span<const AnyBody> scene, const Pose& pose);
   LevelReason reason_now() const;
-  double timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose);
+  double timed_run(std::size_t k, std::span<const AnyBody> scene, const Pose& pose,
+                   const SolidsAt& solids = {});
   std::vector<double> probe(const ToolModel& tool, std::span<const AnyBody> scene);
 
   LevelRequest request_;

@@ -28,6 +28,13 @@ bool go_together(const QueryOptions& a, const QueryOptions& b) {
   return a.measure == b.measure && a.device == b.device && a.shadows == b.shadows;
 }
 
+void check_poses(const SolidsAt& solids) {
+  if (!solids.poses.empty() && solids.poses.size() != solids.solids.size())
+    invalid("there are poses of " + std::to_string(solids.poses.size()) +
+                " solids, but the scene has " + std::to_string(solids.solids.size()),
+            "give one for each, or none");
+}
+
 void check_options(const QueryOptions& options, const ToolModel& tool) {
   if (!(options.stiffness > 0 && std::isfinite(options.stiffness)))
     invalid("the stiffness must be a positive number");
@@ -49,7 +56,8 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
     : tool_(tool),
       level_(tool.level(options.level)),
       options_(options),
-      states_(level_.sphere_count) {
+      states_(level_.sphere_count),
+      solid_query_(std::make_shared<SolidQuery>(tool)) {
   check_options(options, tool);
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);
@@ -61,8 +69,11 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
 }
 
 // Checks that each body of a scene tells what solid occluded space is.
-void ToolQuery::check(std::span<const AnyBody> scene) const {
-  if (scene.empty()) invalid("a scene needs a body");
+void ToolQuery::check(std::span<const AnyBody> scene, const SolidsAt& solids) const {
+  if (scene.empty() && solids.solids.empty()) invalid("a scene needs a body");
+  check_poses(solids);
+  if (paper_ && !solids.solids.empty())
+    invalid("the measure as printed knows no solids", "leave the measure or the solids out");
   if (options_.shadows != Shadows::solid) return;
   for (const AnyBody& body : scene)
     if (!body.tells_inside() && body.points() > 0)
@@ -77,24 +88,52 @@ BodySum ToolQuery::measure(const AnyBody& body, std::size_t place, const Pose& p
   return device_->run(body, pose_in_body(body.to_world(), pose, tool_.center_of_mass));
 }
 
-Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given) {
+Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given, const SolidsAt& solids) {
   const Pose pose = exact_pose(given);
-  check(scene);
+  check(scene, solids);
   if (device_) device_->keep_only(scene);
   SceneSum sum;
-  bodies_ = scene.size();
-  if (bodies_ > 1) of_body_.assign(states_.size(), SphereState::outside);
+  parts_.clear();
+  last_pose_ = pose;
+  has_joined_states_ = scene.size() > 1 || !solids.solids.empty();
+  if (has_joined_states_) of_body_.assign(states_.size(), SphereState::outside);
   for (std::size_t k = 0; k < scene.size(); ++k) {
-    sum.add(measure(scene[k], k, pose));
-    if (bodies_ > 1) add_states();
+    parts_.push_back({measure(scene[k], k, pose), std::nullopt, 0});
+    sum.add(parts_.back().body);
+    if (has_joined_states_) add_states();
   }
-  return finished(sum, pose);
+  if (solids.solids.empty()) return finished(sum, pose, std::nullopt);
+  const double closure = add_solids(solids, pose, sum);
+  return finished(sum, pose, closure);
+}
+
+std::vector<Result> ToolQuery::parts() const {
+  std::vector<Result> results(parts_.size());
+  std::vector<bool> is_taken(parts_.size());
+  const auto result = [&](const Part& part) {
+    SceneSum sum;
+    sum.add(part.body);
+    return finished(sum, last_pose_, part.closure);
+  };
+  for (const Part& part : parts_)
+    if (part.closure) results[part.place] = result(part), is_taken[part.place] = true;
+  std::size_t next = 0;
+  for (const Part& part : parts_) {
+    if (part.closure) continue;
+    while (is_taken[next]) ++next;
+    results[next++] = result(part);
+  }
+  return results;
 }
 
 // Joins the states at the last body with those at the bodies before: cut by any, else inside any.
 void ToolQuery::add_states() const {
   if (device_) device_->read_states(states_);
   if (refined_) refined_->read_states(states_);
+  join_states();
+}
+
+void ToolQuery::join_states() const {
   for (std::size_t k = 0; k < states_.size(); ++k) {
     SphereState& joined = of_body_[k];
     if (states_[k] == SphereState::boundary || joined == SphereState::outside) joined = states_[k];
@@ -102,35 +141,39 @@ void ToolQuery::add_states() const {
 }
 
 void ToolQuery::run(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
-                    std::span<const Job> jobs, std::span<Result> results) {
+                    std::span<const Job> jobs, std::span<Result> results,
+                    std::span<const PlacedSolid> solids) {
   if (jobs.size() != results.size())
     invalid(std::to_string(jobs.size()) + " jobs, but room for " + std::to_string(results.size()) +
             " results");
   for (const ToolQuery* query : queries) {
-    query->check(scene);
+    query->check(scene, {solids, {}});
     if (query->options_.coherent && queries.size() > 1)
       invalid("coherent poses follow each other", "ask for them one by one");
     if (!go_together(query->options_, queries.front()->options_))
       invalid("tools that are queried together need the same measure, device and shadows",
               "make their queries with the same options");
   }
-  for (const Job& job : jobs)
+  for (const Job& job : jobs) {
+    check_poses({solids, job.solids});
     if (job.tool >= queries.size())
       invalid("a job is of tool " + std::to_string(job.tool) + ", counted from 0, but there are " +
               std::to_string(queries.size()));
+  }
   if (jobs.empty()) return;
   if (!queries.front()->device_) {
     for (std::size_t k = 0; k < jobs.size(); ++k)
-      results[k] = queries[jobs[k].tool]->run(scene, jobs[k].pose);
+      results[k] = queries[jobs[k].tool]->run(scene, jobs[k].pose, {solids, jobs[k].solids});
     return;
   }
-  run_on_device(queries, scene, jobs, results);
+  run_on_device(queries, scene, jobs, results, solids);
 }
 
-// Asks body by body: all jobs before one, then before the next.
+// Asks body by body: all jobs before one, then before the next. The host measures solids.
 void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
-                              std::span<const Job> jobs, std::span<Result> results) {
-  auto& [exact, placed, of_body, sums] = queries.front()->batch_room_;
+                              std::span<const Job> jobs, std::span<Result> results,
+                              std::span<const PlacedSolid> solids) {
+  auto& [exact, placed, of_body, sums, closures] = queries.front()->batch_room_;
   const std::size_t count = jobs.size();
   exact.resize(count);
   placed.resize(count);
@@ -150,12 +193,32 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
                    tool};
     });
     measures.front()->run(body, measures, placed, of_body);
-    const bool is_last = &body == &scene.back();
-    for_each_job(count, [&](std::size_t k) {
-      sums[k].add(of_body[k]);
-      if (is_last) results[k] = queries[jobs[k].tool]->finished(sums[k], exact[k]);
-    });
+    for_each_job(count, [&](std::size_t k) { sums[k].add(of_body[k]); });
   }
+  closures.assign(solids.empty() ? 0 : count, 0);
+  for (std::size_t k = 0; k < closures.size(); ++k) {
+    ToolQuery& query = *queries[jobs[k].tool];
+    query.parts_.clear();
+    closures[k] = query.add_solids({solids, jobs[k].solids}, exact[k], sums[k]);
+  }
+  for_each_job(count, [&](std::size_t k) {
+    results[k] = queries[jobs[k].tool]->finished(
+        sums[k], exact[k], closures.empty() ? std::nullopt : std::optional(closures[k]));
+  });
+}
+
+// Adds what solids give, and returns the largest closure.
+double ToolQuery::add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum) {
+  double closure = 0;
+  for (std::size_t k = 0; k < solids.solids.size(); ++k) {
+    const SolidAnswer found = solid_query_->run(solids, k, pose, states_);
+    sum.add(found.body);
+    closure = std::max(closure, found.closure);
+    parts_.push_back({found.body, found.closure, solids.solids[k].place});
+    const bool is_touched = found.body.boundary > 0 || found.body.inside > 0;
+    if (has_joined_states_ && is_touched) join_states();
+  }
+  return closure;
 }
 
 void ToolQuery::forget() {
@@ -163,14 +226,16 @@ void ToolQuery::forget() {
 }
 
 std::span<const SphereState> ToolQuery::states() const {
-  if (bodies_ > 1) return of_body_;
+  if (has_joined_states_) return of_body_;
   if (device_) device_->read_states(states_);
   if (refined_) refined_->read_states(states_);
   return states_;
 }
 
-Result ToolQuery::finished(const SceneSum& sum, const Pose& pose) const {
+Result ToolQuery::finished(const SceneSum& sum, const Pose& pose,
+                           std::optional<double> closure) const {
   Result result = sum.result(tool_, pose.rotation);
+  result.closure = closure;
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
   return result;

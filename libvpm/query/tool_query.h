@@ -4,7 +4,9 @@
 
 #include <vpm/query_types.h>
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/backend/device_measure.h"
 #include "libvpm/measure/body_sum.h"
+#include "libvpm/query/solid_query.h"
 #include "libvpm/scene/any_body.h"
 
 namespace vpm {
@@ -23,14 +26,15 @@ class ToolQuery {
   ToolQuery(const ToolModel& tool, const QueryOptions& options);
 
   // Returns the answer for one pose before a scene's bodies. Has the contract of Query::run.
-  Result run(std::span<const AnyBody> scene, const Pose& pose);
+  Result run(std::span<const AnyBody> scene, const Pose& pose, const SolidsAt& solids = {});
   Result run(const AnyBody& body, const Pose& pose) { return run(std::span(&body, 1), pose); }
 
   // Stores the answers of many jobs, whose tools are indices into `queries`. Has the contract of
   // Query::run. Throws Error(invalid_argument) unless the queries have the same options save level
   // and stiffness. A device launches up to 16 tools at once.
   static void run(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
-                  std::span<const Job> jobs, std::span<Result> results);
+                  std::span<const Job> jobs, std::span<Result> results,
+                  std::span<const PlacedSolid> solids = {});
   static void run(std::span<ToolQuery* const> queries, const AnyBody& body,
                   std::span<const Job> jobs, std::span<Result> results) {
     run(queries, std::span(&body, 1), jobs, results);
@@ -44,12 +48,21 @@ class ToolQuery {
     run(std::span(&body, 1), jobs, results);
   }
 
+  // Prepares the tool's surface, which solids of a scene need. Throws Error(refused) if it has
+  // none.
+  void prepare_surface() { solid_query_->prepare(); }
+  // Takes the surface that another query of the same tool prepares for solids, or has prepared.
+  void share_surface_of(const ToolQuery& other) { solid_query_ = other.solid_query_; }
+
   // Ends a motion of coherent poses.
   void forget();
 
   const Level& level() const { return level_; }
   // Returns the state of each sphere of the level at the last single pose; undefined after a batch.
   std::span<const SphereState> states() const;
+  // Returns what each body gave at the last single pose, in the scene's order of bodies: solids at
+  // their places, the others between them.
+  std::vector<Result> parts() const;
 
  private:
   // Memory of a batch on a device, one of each for a job; used again, since new memory costs as
@@ -59,14 +72,18 @@ class ToolQuery {
     std::vector<BodyJob> placed;
     std::vector<BodySum> of_body;
     std::vector<SceneSum> sums;
+    std::vector<double> closures;  // only where the scene has solids
   };
 
   static void run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
-                            std::span<const Job> jobs, std::span<Result> results);
-  void check(std::span<const AnyBody> scene) const;
+                            std::span<const Job> jobs, std::span<Result> results,
+                            std::span<const PlacedSolid> solids);
+  void check(std::span<const AnyBody> scene, const SolidsAt& solids) const;
   BodySum measure(const AnyBody& body, std::size_t place, const Pose& pose);
+  double add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum);
   void add_states() const;
-  Result finished(const SceneSum& sum, const Pose& pose) const;
+  void join_states() const;
+  Result finished(const SceneSum& sum, const Pose& pose, std::optional<double> closure) const;
 
   const ToolModel& tool_;
   const Level& level_;
@@ -77,7 +94,16 @@ class ToolQuery {
   std::unique_ptr<DeviceMeasure> device_;
   mutable std::vector<SphereState> states_;
   mutable std::vector<SphereState> of_body_;  // of the last one, if there are several
-  std::size_t bodies_ = 1;                    // of the scene asked last
+  bool has_joined_states_ = false;            // in of_body_, of several bodies or solids
+  std::shared_ptr<SolidQuery> solid_query_;
+  // What each body gave for the last single pose, and which of them were solids.
+  struct Part {
+    BodySum body;
+    std::optional<double> closure;  // of a solid
+    std::size_t place = 0;          // of a solid
+  };
+  std::vector<Part> parts_;  // solids last
+  Pose last_pose_;
   BatchRoom batch_room_;
 };
 

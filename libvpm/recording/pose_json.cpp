@@ -202,16 +202,43 @@ std::optional<double> time_of(const json& object) {
   return has_stamp ? seconds_of(object["header"]["stamp"], "stamp") : std::nullopt;
 }
 
+namespace {
+
+ObjectPose pose_in(const json& object, const char* key) {
+  const json& value = object[key];
+  return value.is_object() ? pose_of_object(value) : ObjectPose{numbers_of(value), false};
+}
+
+}  // namespace
+
 ObjectPose pose_of_object(const json& object) {
   for (const char* key : {"pose", "matrix", "transform_matrix", "transform"}) {
-    if (!object.contains(key)) continue;
-    return object[key].is_object() ? pose_of_object(object[key])
-                                   : ObjectPose{numbers_of(object[key]), false};
+    if (object.contains(key)) return pose_in(object, key);
   }
   if (const auto pose = pose_of_ros(object)) return *pose;
+  if (object.contains("tool") && object["tool"].is_structured()) return pose_in(object, "tool");
   refuse("no pose in the object; it has " + keys_of(object), {},
          "give \"pose\" (7 numbers) or \"matrix\" (4x4 by rows), or \"position\" with x, y, z and "
          "\"orientation\" with x, y, z, w");
+}
+
+std::vector<Pose> poses_of_solids(const json& list, double& largest_deviation) {
+  if (!list.is_array() || list.empty() || list.front().is_number())
+    refuse("\"solids\" is no list of poses", {},
+           "write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]");
+  std::vector<Pose> poses;
+  for (const json& item : list) {
+    try {
+      double deviation = 0;
+      poses.push_back(from_untimed(
+          item.is_object() ? pose_of_object(item).numbers : numbers_of(item), &deviation));
+      largest_deviation = std::max(largest_deviation, deviation);
+    } catch (const Error& fault) {
+      refuse("solid " + std::to_string(poses.size()) + " of \"solids\": " + fault.problem(), {},
+             fault.hint());
+    }
+  }
+  return poses;
 }
 
 std::optional<Pose> camera_of_object(const json& object, double* deviation) {

@@ -47,9 +47,14 @@ struct ObjectPose {
 };
 
 // Returns the pose of an object: "pose", "matrix" or "transform_matrix", or position and
-// orientation as ROS has them, also within "pose" or "transform". Throws a refusal that names the
-// keys wanted.
+// orientation as ROS has them, also within "pose" or "transform"; or a list or object "tool".
+// Throws a refusal that names the keys wanted.
 ObjectPose pose_of_object(const nlohmann::json& object);
+
+// Returns the poses of a list of a scene's solids, mesh to world: each a list of numbers or an
+// object, as a tool's. Raises `largest_deviation` to that of their rotations. Throws a refusal for
+// any other value, and for a list of none.
+std::vector<Pose> poses_of_solids(const nlohmann::json& list, double& largest_deviation);
 
 // Returns the pose of a camera's object; empty if it has none of the keys.
 std::optional<Pose> camera_of_object(const nlohmann::json& object, double* deviation);

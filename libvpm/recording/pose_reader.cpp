@@ -192,6 +192,7 @@ std::optional<Pose> PoseReader::next() {
   }
   time_ = list_[item_].time;
   id_ = list_[item_].id;
+  solids_ = list_[item_].solids;
   return list_[item_++].pose;
 }
 
@@ -245,6 +246,7 @@ PoseReader::TimedPose PoseReader::parse_value(const nlohmann::json& value) {
   TimedPose found =
       pose.are_named ? TimedPose{rigid(pose.numbers), time, {}} : from_numbers(pose.numbers, time);
   if (value.contains("id")) found.id = value["id"].dump();
+  if (value.contains("solids")) found.solids = poses_of_solids(value["solids"], largest_deviation_);
   return found;
 }
 

@@ -19,10 +19,10 @@ namespace vpm {
 // Reads poses from a stream, one at a time, so that a pipe is answered line by line. Formats, told
 // apart line by line:
 //   JSON         [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
-//                by row]}, or {"position": {x, y, z}, "orientation": {x, y, z, w}}; "time",
-//                "timestamp", "stamp" or "t" in an object, or an eighth number in front, is the
-//                time; "id" in an object is kept. Also as numpy prints lists, over several lines,
-//                and a list of such poses
+//                by row]}, or {"position": {x, y, z}, "orientation": {x, y, z, w}}, or {"tool": one
+//                of these}; "time", "timestamp", "stamp" or "t" in an object, or an eighth number
+//                in front, is the time; "id" in an object is kept, and "solids", a list of poses.
+//                Also as numpy prints lists, over several lines, and a list of such poses
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   KITTI text   twelve numbers, a 3x4 matrix row by row
 //   matrix text  four lines of four numbers for each pose, or three for each pose of the file
@@ -44,6 +44,8 @@ class PoseReader {
   // Returns the value of `id` beside the last pose in an object of JSON, as JSON; empty if it has
   // none.
   const std::string& id() const { return id_; }
+  // Returns the poses in "solids" beside the last pose; empty if it has none.
+  const std::vector<Pose>& solids() const { return solids_; }
   // Returns the time of the last pose in seconds; empty if its line has none.
   std::optional<double> time() const { return time_; }
   // True if the last line that was read has numbers that are not finite, or only zeros, which
@@ -62,6 +64,7 @@ class PoseReader {
     Pose pose;
     std::optional<double> time;
     std::string id = {};  // JSON; empty without one
+    std::vector<Pose> solids = {};
   };
   struct Line {
     std::string text;
@@ -108,6 +111,7 @@ class PoseReader {
   std::size_t item_ = 0;             // counts those of the list that were returned
   std::optional<double> time_;
   std::string id_;
+  std::vector<Pose> solids_;
   bool is_undefined_ = false;
   double largest_deviation_ = 0;
 };

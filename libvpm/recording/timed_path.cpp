@@ -56,6 +56,8 @@ std::optional<Pose> TimedPath::next(PoseReader& reader, UndefinedPoses undefined
 }
 
 void TimedPath::add(const PoseReader& reader, const Pose& pose) {
+  if (!reader.solids().empty())
+    refuse("\"solids\" do not move along a path", reader.place(), "leave them out");
   if (const std::optional<double> time = reader.time()) {
     const bool is_again = !times_.empty() && *time == times_.back();
     if (is_again && times_.size() == poses_.size() && are_equal(pose, poses_.back())) {

@@ -50,14 +50,8 @@ Solid joined(const Solid& solid) {
 
 }  // namespace
 
-SolidSurface::SolidSurface(const Solid& solid, bool with_depth)
-    : SolidSurface(solid, enclosure_of(solid), with_depth) {}
-
-SolidSurface::SolidSurface(const Solid& solid, const Enclosure& enclosure, bool with_depth) {
-  prepare(joined(enclosure.surface ? *enclosure.surface : solid), with_depth);
-}
-
-void SolidSurface::prepare(Solid surface, bool with_depth) {
+SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
+  Solid surface = joined(boundary);
   const MassProperties mass = mass_properties(surface);
   if (surface.triangles.empty() || !(mass.volume > 0))
     refuse("the solid has no volume", {}, "give a closed mesh that is oriented outward");
@@ -118,6 +112,16 @@ Depth SolidSurface::depth(Vec3 x) const {
   const double sign = dot(out, normal) > 0 ? -1 : 1;
   const bool is_on = nearest.distance <= 1e-9 * reach_;
   return {sign * nearest.distance, is_on ? -normal : (sign / nearest.distance) * out};
+}
+
+SphereState SolidSurface::state_of(Vec3 center, double radius) const {
+  constexpr double kWrongCells = 2;  // by which the grid errs at creases
+  const double coarse = grid_->at(center).value, sure = radius + kWrongCells * grid_->cell();
+  if (coarse > sure) return SphereState::inside;
+  if (coarse < -sure) return SphereState::outside;
+  if (closest_->closest(center, radius).triangle != SurfacePoint::kNone)
+    return SphereState::boundary;
+  return holds(center) ? SphereState::inside : SphereState::outside;
 }
 
 std::size_t SolidSurface::bytes() const {

@@ -2,12 +2,13 @@
 // size.
 #pragma once
 
+#include <vpm/query_types.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/solid/depth_grid.h"
@@ -19,12 +20,12 @@ namespace vpm {
 // Immutable. Lives in its own frame: the axes of the mesh about the centre of mass.
 class SolidSurface {
  public:
-  // Takes what the mesh encloses at least once (its `enclosure`), welds it, and moves each vertex
-  // by at most kJitter of the reach, by a hash of its place: flush, coincident and aligned faces of
-  // two solids then are in general position. `with_depth` also prepares forces. Throws
-  // Error(refused) for a solid without volume or triangles.
-  explicit SolidSurface(const Solid& solid, bool with_depth = true);
-  SolidSurface(const Solid& solid, const Enclosure& enclosure, bool with_depth);
+  // Takes the boundary of what a mesh encloses at least once (enclosure_of in
+  // mesh/outer_surface.h), welds it, and moves each vertex by at most kJitter of the reach, by a
+  // hash of its place: flush, coincident and aligned faces of two solids then are in general
+  // position. `with_depth` also prepares forces. Throws Error(refused) for a boundary without
+  // volume or triangles.
+  explicit SolidSurface(const Solid& boundary, bool with_depth = true);
 
   static constexpr double kJitter = 0x1p-36;
 
@@ -46,9 +47,11 @@ class SolidSurface {
   Depth depth(Vec3 x) const;
   // Returns the depth by the closest point, everywhere. Needs has_depth().
   Depth exact_depth(Vec3 x) const;
+  // Returns whether a ball, own frame, is outside, inside, or cut by the surface. Needs
+  // has_depth().
+  SphereState state_of(Vec3 center, double radius) const;
 
  private:
-  void prepare(Solid surface, bool with_depth);
   void prepare_depth();
 
   double volume_ = 0, reach_ = 0;

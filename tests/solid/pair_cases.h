@@ -5,12 +5,14 @@
 #include <random>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/solid/solid_pair.h"
 
 namespace vpm::test {
 
 inline std::shared_ptr<const SolidSurface> surface(const Solid& solid, bool with_depth = false) {
-  return std::make_shared<SolidSurface>(solid, with_depth);
+  const Enclosure enclosure = enclosure_of(solid);
+  return std::make_shared<SolidSurface>(enclosure.surface ? *enclosure.surface : solid, with_depth);
 }
 
 inline Pose at(Vec3 place) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace vpm {
 
@@ -52,10 +53,12 @@ enum class LevelReason {
 // A Query at the level that a request chooses; thread-safety and errors as for Query.
 class VPM_API LevelQuery {
  public:
-  // Chooses the level for the scene. With a deadline the levels are timed here first, the tool put
-  // on places of the scene. `first_pose` says where the tool will be, for the scene's scale. Throws
-  // Error(refused) if the tool has no calibration, no level as accurate, or one level only where
-  // several are needed; Error(invalid_argument) as Query, and for an error that is no fraction.
+  // Chooses the level for the scene, and prepares the tool's surface if that has solids. With a
+  // deadline the levels are timed here first, the tool put on places of the scene. `first_pose`
+  // says where the tool will be, for the scene's scale. Throws Error(refused) if the tool has no
+  // calibration, no level as accurate, or one level only where several are needed;
+  // Error(invalid_argument) as Query, for an error that is no fraction, and for a level by deadline
+  // or scene where the scene has solids only.
   LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
              const Scene& scene, const Pose& first_pose);
   // The same for several tools, each at a level of its own, which are named by their place.
@@ -68,7 +71,8 @@ class VPM_API LevelQuery {
   // Returns the answer of a tool at the level of the moment, and with a deadline chooses the next
   // one from the time that it took. Throws Error(invalid_argument), as all below, if there is no
   // such tool.
-  Result run(const Scene& scene, const Pose& pose, std::size_t tool = 0);
+  Result run(const Scene& scene, const Pose& pose, std::size_t tool = 0,
+             std::span<const Pose> solids = {});
 
   // Stores the answers of many jobs, as Query does, each at the level of its tool. Throws
   // Error(invalid_argument) also for a request with a deadline.
@@ -86,6 +90,8 @@ class VPM_API LevelQuery {
   std::optional<SceneScale> scale(std::size_t tool = 0) const;
   // Returns the state of each sphere at the last single pose, as Query::states().
   std::span<const SphereState> states(std::size_t tool = 0) const;
+  // Returns what each body gave at the last single pose, as Query::parts().
+  std::vector<Result> parts(std::size_t tool = 0) const;
 
  private:
   struct Impl;

@@ -40,7 +40,14 @@ class VPM_API Query {
   // a scene with one thread. Throws Error(refused) for a pose that is not finite, not rigid or
   // further than 2^100 m from the origin, and for solid shadows of points without a camera;
   // Error(unavailable) if the device fails.
-  Result run(const Scene& scene, const Pose& pose);
+  //
+  // Solids of the scene are measured by the tool's surface and theirs, whatever the level, on the
+  // CPU; `solids` moves them, as Job::solids does. The first call then prepares the tool's surface
+  // (.2 s for 7000 triangles). Throws Error(refused) for a tool that keeps no surface, and where
+  // the boundary of what it shares with a solid does not close, which is a defect of a mesh;
+  // Error(invalid_argument) for another number of poses than of solids, and for the measure as
+  // printed, which knows no solids.
+  Result run(const Scene& scene, const Pose& pose, std::span<const Pose> solids = {});
 
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
   // thousands of poses of up to 16 tools at once. `results` must have the size of `jobs`, else
@@ -54,6 +61,10 @@ class VPM_API Query {
   // Returns the state of each sphere of the level at the last single pose; unspecified after jobs.
   // Valid until the next call. A device's states are fetched here.
   std::span<const SphereState> states() const;
+
+  // Returns what each body gave at the last single pose, in the order of the scene's bodies; the
+  // answer was their sum. Unspecified after jobs.
+  std::vector<Result> parts() const;
 
   // Returns the number of spheres of the level that is used of a tool.
   std::uint32_t level(std::size_t tool = 0) const;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace vpm {
 
@@ -34,6 +35,9 @@ struct QueryOptions {
 struct Job {
   Pose pose;
   std::uint32_t tool = 0;  // place in the list of tools
+  // Poses of the scene's solids, mesh to world, in the order of its bodies; none: where they were
+  // made. Refers to the caller's memory.
+  std::span<const Pose> solids = {};
 };
 
 // State of a sphere of the tool at the pose last asked: free, cut by the surface, or behind it.
@@ -55,6 +59,9 @@ struct Result {
   // Distinct points of the scene strictly inside a sphere of the tool; the measure as printed
   // counts them, the refined one does not.
   std::optional<std::uint32_t> points;
+  // Of the scene's solids, if there are any: the largest Overlap::closure (vpm/solid.h), by which
+  // the boundary of what the tool shares with one of them misses to be closed. At most 1e-8.
+  std::optional<double> closure;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;
 };

@@ -17,6 +17,8 @@ namespace vpm {
 class AnyBody;        // the library's own
 struct Cloud;         // the library's own
 struct HandleAccess;  // the library's own
+struct PlacedSolid;   // the library's own
+class SolidBody;
 
 // Handle of immutable measured points with normals into free space; copies share it. Thread-safe.
 // Whatever is asked of a handle that was moved from throws Error(invalid_argument), as of all
@@ -64,14 +66,24 @@ class VPM_API Body {
   // points, or places further than 2^100 m from the origin.
   explicit Body(const PointCloud& cloud, Denoising points = Denoising::on);
 
-  // Returns the number of points with a normal; waits for a depth image that is being prepared.
+  // Makes a body of a solid (vpm/solid.h) at a pose, which maps its mesh to the world. Takes no
+  // time, so a solid that moves is made anew, or moved by Job::solids. Throws
+  // Error(invalid_argument) for a solid made without what forces need; Error(refused) for a pose
+  // that is not finite, not rigid or further than 2^100 m from the origin.
+  explicit Body(const SolidBody& solid, const Pose& to_world = {});
+
+  // Returns the number of points with a normal; waits for a depth image that is being prepared. A
+  // solid has none.
   std::size_t points() const;
+  bool is_solid() const;
 
  private:
   friend HandleAccess;
   explicit Body(std::shared_ptr<const AnyBody> body) : body_(std::move(body)) {}
 
-  std::shared_ptr<const AnyBody> body_;  // null once moved from
+  // One of them; both are null once moved from.
+  std::shared_ptr<const AnyBody> body_;
+  std::shared_ptr<const PlacedSolid> solid_;
 };
 
 // List of bodies in one world frame; copies share the bodies. Thread-safe.
@@ -84,7 +96,8 @@ class VPM_API Scene {
 
   // Makes a scene of several bodies: volume, force, torque and counts of spheres are the sums over
   // them, so that a place in two bodies counts for both; a sphere's state is boundary if any body
-  // cuts it, else inside if it is inside of any. Throws Error(invalid_argument) for none.
+  // cuts it, else inside if it is inside of any. The order of bodies changes no bit of the sums.
+  // Throws Error(invalid_argument) for none.
   explicit Scene(std::vector<Body> bodies);
 
   const std::vector<Body>& bodies() const;
@@ -92,8 +105,10 @@ class VPM_API Scene {
  private:
   friend HandleAccess;
 
-  std::shared_ptr<const std::vector<Body>> bodies_;   // never empty; null once moved from
-  std::shared_ptr<const std::vector<AnyBody>> list_;  // the same bodies, side by side
+  std::shared_ptr<const std::vector<Body>> bodies_;  // never empty; null once moved from
+  // The same bodies, side by side: those of points, and the solids.
+  std::shared_ptr<const std::vector<AnyBody>> list_;
+  std::shared_ptr<const std::vector<PlacedSolid>> solids_;
 };
 
 }  // namespace vpm

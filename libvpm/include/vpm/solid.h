@@ -1,5 +1,5 @@
 // From a mesh to a tool: reading, packing with spheres, levels of detail. And what two solids
-// share. Library vpm::solid.
+// share. Library vpm::solid; what concerns Tool, SolidBody and overlaps alone is in vpm::vpm.
 //
 //   const vpm::SolidMesh mesh = vpm::SolidMesh::read("gripper.stl", {.scale = 0.001});
 //   const vpm::Tool tool = vpm::build_tool(vpm::pack(mesh, {.spheres = 1000}), {.levels = {250}});
@@ -154,6 +154,9 @@ class VPM_API SolidBody {
   // overlaps once: .2 s for 7000 triangles, 1 s for 86 000. `with_force` false leaves out what
   // forces need, which is most of that. Throws Error(refused) for a mesh without volume.
   explicit SolidBody(const SolidMesh& mesh, bool with_force = true);
+  // Prepares the surface that a tool model keeps, in the frame of its mesh. This needs no more than
+  // the library vpm, as does all below. Throws Error(refused) for a model that keeps none.
+  explicit SolidBody(const Tool& tool, bool with_force = true);
 
   // Returns the volume, m^3.
   double volume() const;

@@ -1,0 +1,72 @@
+#include "libvpm/query/solid_query.h"
+
+#include <algorithm>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/exact_pose.h"
+
+namespace vpm {
+namespace {
+
+// Stores the state of each sphere of a tool at a pose before a solid at a pose.
+void note_states(std::span<const Sphere> spheres, const Pose& pose, const SolidSurface& solid,
+                 const Pose& at, std::span<SphereState> states) {
+  const Pose to_solid = relative_to({at.rotation, at * solid.center_of_mass()}, pose);
+  for (std::size_t k = 0; k < states.size(); ++k)
+    states[k] = solid.state_of(to_solid * spheres[k].center, spheres[k].radius);
+}
+
+}  // namespace
+
+std::shared_ptr<const SolidSurface> prepared_surface(const ToolModel& tool, bool with_depth) {
+  if (tool.surface.triangles.empty())
+    refuse("the tool model keeps no surface, by which solids are measured", {},
+           "make it again by vpm-graph, without --no-surface");
+  return std::make_shared<const SolidSurface>(tool.surface, with_depth);
+}
+
+void SolidQuery::prepare() {
+  if (!surface_) surface_ = prepared_surface(tool_, true);
+}
+
+SolidPair& SolidQuery::pair_with(const PlacedSolid& solid, std::size_t k) {
+  prepare();
+  if (pairs_.size() <= k) pairs_.resize(k + 1);
+  if (!pairs_[k] || pairs_[k]->other != solid.surface)
+    pairs_[k].emplace(Pair{solid.surface, SolidPair(surface_, solid.surface)});
+  return pairs_[k]->pair;
+}
+
+// Takes the wrench about the tool's centre of mass and into its axes.
+BodySum SolidQuery::sum_of(const SharedSolid& shared, const Pose& pose) const {
+  BodySum body;
+  ToolSum& sum = body.sum;
+  sum.volume.add(std::min(shared.volume / tool_.volume, 1.0));
+  if (sum.volume.value == 0) return body;
+  const Vec3 arm = shared.centroid - pose * tool_.center_of_mass;
+  const Vec3 torque = shared.torque + cross(arm, shared.force);
+  const Rotation to_tool = transpose(pose.rotation);
+  const Vec3 f = (1 / tool_.volume) * (to_tool * shared.force),
+             t = (1 / (tool_.volume * tool_.radius)) * (to_tool * torque);
+  sum.force[0].add(f.x), sum.force[1].add(f.y), sum.force[2].add(f.z);
+  sum.torque[0].add(t.x), sum.torque[1].add(t.y), sum.torque[2].add(t.z);
+  return body;
+}
+
+SolidAnswer SolidQuery::run(const SolidsAt& solids, std::size_t k, const Pose& pose,
+                            std::span<SphereState> states) {
+  const PlacedSolid& solid = solids.solids[k];
+  const Pose at = exact_pose(solids.pose(k));
+  const SharedSolid shared = pair_with(solid, k).measure(pose, at);
+  SolidAnswer answer{sum_of(shared, pose), shared.closure};
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  if (answer.body.sum.volume.value == 0) return answer;
+  note_states(tool_.spheres, pose, *solid.surface, at, states);
+  for (const SphereState state : states) {
+    answer.body.boundary += state == SphereState::boundary;
+    answer.body.inside += state == SphereState::inside;
+  }
+  return answer;
+}
+
+}  // namespace vpm

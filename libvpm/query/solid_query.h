@@ -1,0 +1,65 @@
+// Measures a tool against the solids of a scene, by the surfaces of both (libvpm/solid).
+#pragma once
+
+#include <vpm/query_types.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libvpm/measure/body_sum.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/solid/placed_solid.h"
+#include "libvpm/solid/solid_pair.h"
+
+namespace vpm {
+
+// The solids of a scene, and where they are when it is asked.
+struct SolidsAt {
+  std::span<const PlacedSolid> solids;
+  std::span<const Pose> poses;  // of each, mesh to world; none: where the solids say
+
+  const Pose& pose(std::size_t k) const { return poses.empty() ? solids[k].to_world : poses[k]; }
+};
+
+// What one solid gives.
+struct SolidAnswer {
+  BodySum body;
+  double closure = 0;  // SharedSolid::closure
+};
+
+// Refers to its tool, which must outlive it. Belongs to one thread.
+class SolidQuery {
+ public:
+  explicit SolidQuery(const ToolModel& tool) : tool_(tool) {}
+
+  // Prepares the tool's surface, if that is not done. Throws Error(refused) if the tool keeps none.
+  void prepare();
+
+  // Returns what the k-th solid gives for the tool at a pose, in the tool's axes and units: the
+  // volume to rounding, since all of it is rounded to 2^-60 of the tool. `states` receives that of
+  // each of the largest spheres. Throws what prepare() throws, and Error(refused) if the shared
+  // boundary does not close.
+  SolidAnswer run(const SolidsAt& solids, std::size_t k, const Pose& pose,
+                  std::span<SphereState> states);
+
+ private:
+  struct Pair {
+    std::shared_ptr<const SolidSurface> other;
+    SolidPair pair;
+  };
+
+  SolidPair& pair_with(const PlacedSolid& solid, std::size_t k);
+  BodySum sum_of(const SharedSolid& shared, const Pose& pose) const;
+
+  const ToolModel& tool_;
+  std::shared_ptr<const SolidSurface> surface_;  // null before the first call
+  std::vector<std::optional<Pair>> pairs_;       // by the solids' places
+};
+
+// Returns the surface of a tool, prepared. Throws Error(refused) if the tool keeps none.
+std::shared_ptr<const SolidSurface> prepared_surface(const ToolModel& tool, bool with_depth);
+
+}  // namespace vpm
