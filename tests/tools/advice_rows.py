@@ -375,7 +375,7 @@ COMMANDS = [
     # Pairs of options, and modes
     ("vpm-query --cloud wall.vpmc --poses poses.txt", "--tool is missing: give the .vpmg that (vpm-graph) wrote",
      "{0} cube.vpmp -o out.vpmg && vpm-query --tool out.vpmg --cloud wall.vpmc --poses poses.txt", WALL),
-    ("vpm-query --tool small.vpmg --poses poses.txt", "give the .vpmc that (vpm-normals) wrote, or --frames",
+    ("vpm-query --tool small.vpmg --poses poses.txt", "give the .vpmc that (vpm-normals) wrote, or --solid or --frames",
      f"{{0}} wall.pgm {CAMERA} -o out.vpmc && vpm-query --tool small.vpmg --cloud out.vpmc --poses poses.txt", WALL),
     ("vpm-query --tool small.vpmg --poses poses.txt", "the .vpmc that vpm-normals wrote, or (--frames)",
      f"{STEPS} {{0}} steps --trajectory poses.txt"),

@@ -8,6 +8,7 @@
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -62,6 +63,12 @@ void declare_inputs(CLI::App& app, Arguments& a) {
       ->allow_extra_args(false)
       ->option_text("MODEL");
   app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)")->option_text("CLOUD");
+  app.add_option(
+         "--solid", a.solids,
+         "Tool model (.vpmg) or mesh of a solid in the scene, with its pose after an @ where "
+         "that is not the origin. Given several times, the scene has all of them")
+      ->allow_extra_args(false)
+      ->option_text("FILE[@TX,TY,TZ,QX,QY,QZ,QW]");
   app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw")
       ->join(',')
       ->type_name("FLOAT")
@@ -168,6 +175,8 @@ void declare_outputs(CLI::App& app, Arguments& a) {
   begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output, "Results: JSON Lines, or CSV if the name ends in .csv")
       ->capture_default_str();
+  app.add_flag("--bodies", a.bodies,
+               "Each line also lists what each body of the scene gives: cloud first, then solids");
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state: .csv, .ply (balls), .points.ply or .glb");
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
@@ -199,6 +208,10 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 void check_names(const Arguments& a, const CommonOptions& common) {
+  std::vector<std::string> solids;
+  for (const std::string& text : a.solids) solids.push_back(solid_from_text(text).name);
+  if (std::ranges::count(solids, "-") > 0)
+    throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
   if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.poses == "-") +
           (a.replay.trajectory == "-") >
       1) {
@@ -216,6 +229,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
   std::vector<std::string> inputs{a.cloud, a.poses, a.replay.frames, a.replay.trajectory,
                                   a.replay.camera_poses};
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
+  inputs.insert(inputs.end(), solids.begin(), solids.end());
   check_files(inputs,
               {{"--output", a.output, std::nullopt, OutputForm::results},
                {"--spheres-out", a.spheres_out, std::nullopt},

@@ -26,12 +26,13 @@ struct ReplayArguments {
 // Values of the options, in the units that --help names.
 struct Arguments {
   std::vector<std::string> tools;
+  std::vector<std::string> solids;  // each FILE or FILE@POSE
   std::string cloud, pose, poses;
   std::string measure = "refined", shadows = "near";
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us, stiffness;
-  bool for_scene = false, coherent = false, raw_points = false;
+  bool for_scene = false, coherent = false, raw_points = false, bodies = false;
   std::string coupling;
   std::size_t batch = 1;
   bool serve = false;

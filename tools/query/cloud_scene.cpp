@@ -6,17 +6,26 @@
 #include <utility>
 
 #include "tools/common/error_text.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 
-CloudScene::CloudScene(QuerySetup& setup)
-    : CloudScene(setup, setup.arguments.cloud, PointCloud::read(setup.arguments.cloud)) {}
+CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
+  const std::string& name = setup.arguments.cloud;
+  name.empty() ? void(scene_.emplace(setup.solids)) : add(setup, name, PointCloud::read(name));
+}
 
 CloudScene::CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud)
     : setup_(setup) {
+  add(setup, name, cloud);
+}
+
+void CloudScene::add(QuerySetup& setup, const std::string& name, const PointCloud& cloud) {
   const auto start = std::chrono::steady_clock::now();
   try {
-    scene_.emplace(Body(cloud, setup.points));
+    std::vector<Body> bodies{Body(cloud, setup.points)};
+    bodies.insert(bodies.end(), setup.solids.begin(), setup.solids.end());
+    scene_.emplace(std::move(bodies));
   } catch (const Error& fault) {
     if (!fault.where().empty()) throw;
     throw Error(fault.kind(), fault.problem(), name, fault.hint());
@@ -31,7 +40,7 @@ CloudScene::CloudScene(QuerySetup& setup, const std::string& name, const PointCl
 }
 
 void CloudScene::warn_at_end() const {
-  if (!has_said_) say(setup_.program, check_->remarks());
+  if (check_ && !has_said_) say(setup_.program, check_->remarks());
 }
 
 std::vector<Pose> poses_of(const std::vector<AskedPose>& asked) {
@@ -42,7 +51,8 @@ std::vector<Pose> poses_of(const std::vector<AskedPose>& asked) {
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {
   if (!arguments.pose.empty())
-    pending_ = {naming("--pose", [&] { return pose_from_text(arguments.pose, &deviation_); }), {}};
+    pending_ = {
+        naming("--pose", [&] { return pose_from_text(arguments.pose, &deviation_); }), {}, {}};
 }
 
 AskedPose PoseSource::first() {
@@ -51,12 +61,25 @@ AskedPose PoseSource::first() {
   return *pending_;
 }
 
+namespace {
+
+// Throws Error(refused) unless the last pose came with poses of all solids or of none.
+void check_solids(const PoseReader& reader, std::size_t solids) {
+  const std::size_t given = reader.solids().size();
+  if (given == 0 || given == solids) return;
+  throw Error(ErrorKind::refused, misfit_of_solids(given, solids), reader.place(), kSolidsAdvice);
+}
+
+}  // namespace
+
 std::optional<AskedPose> PoseSource::next_one() {
   if (pending_) return std::exchange(pending_, std::nullopt);
   if (!arguments_.pose.empty()) return std::nullopt;
   if (!reader_) reader_.emplace(arguments_.poses);
   const std::optional<Pose> pose = reader_->next();
-  return pose ? std::optional(AskedPose{*pose, reader_->id()}) : std::nullopt;
+  if (!pose) return std::nullopt;
+  check_solids(*reader_, arguments_.solids.size());
+  return AskedPose{*pose, reader_->id(), reader_->solids()};
 }
 
 std::vector<AskedPose> PoseSource::next(std::size_t most) {

@@ -15,26 +15,30 @@
 
 namespace vpm::tools {
 
-// Cloud of --cloud, prepared for queries.
+// Cloud of --cloud, prepared for queries, and the solids of --solid.
 class CloudScene {
  public:
-  // Reads and prepares the cloud and adds it to the view, if there is one. Says what the sizes of
-  // cloud and tools let doubt.
+  // Reads and prepares the cloud, if there is one, and adds it to the view, if there is one. Says
+  // what the sizes of cloud and tools let doubt.
   explicit CloudScene(QuerySetup& setup);
   // The same for a cloud that was read from the file `name`.
   CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud);
 
   const Scene& scene() const { return *scene_; }
-  // Returns the number of the cloud's points.
+  // Returns the number of the cloud's points; 0 without a cloud.
   std::size_t points() const { return scene_->bodies().front().points(); }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
-  // Shows the answer at a pose of the k-th tool to the checks.
-  void see(const Pose& pose, std::size_t k, const Result& result) { check_->see(pose, result, k); }
+  // Shows the answer at a pose of the k-th tool to the checks, which are about clouds.
+  void see(const Pose& pose, std::size_t k, const Result& result) {
+    if (check_ && setup_.solids.empty()) check_->see(pose, result, k);
+  }
   // Says what the poses let doubt, where nothing was said of sizes.
   void warn_at_end() const;
 
  private:
+  void add(QuerySetup& setup, const std::string& name, const PointCloud& cloud);
+
   const QuerySetup& setup_;
   std::optional<Scene> scene_;
   std::optional<SetupCheck> check_;

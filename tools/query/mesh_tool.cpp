@@ -52,9 +52,10 @@ PackMesh load_plugin() {
     if (library == nullptr) library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const function = library == nullptr ? nullptr : ::dlsym(library, kPackMesh);
   if (function == nullptr)
-    throw Error(ErrorKind::unavailable,
-                std::string("a mesh as the tool needs ") + kMeshPlugin + ", which is not there", {},
-                "give the .vpmg that vpm-pack and vpm-graph make of it");
+    throw Error(
+        ErrorKind::unavailable,
+        std::string("a mesh in place of a model needs ") + kMeshPlugin + ", which is not there", {},
+        "give the .vpmg that vpm-pack and vpm-graph make of it");
   return reinterpret_cast<PackMesh>(function);
 }
 
@@ -80,19 +81,31 @@ bool is_mesh_file(const std::string& path) {
   return kEndings.contains(file::in_lower_case(fs::path(path).extension().string()));
 }
 
-Tool tool_of_mesh(const Program& program, const std::string& path) {
+namespace {
+
+Tool packed(const Program& program, const std::string& path, unsigned spheres) {
   const PackMesh pack_mesh = load_plugin();
   const MemoryFile model;
   Listener listener{program, path};
   PackingFault fault;
-  if (!pack_mesh(path.c_str(), kSpheres, program.common().threads, model.path().c_str(),
-                 say_of_mesh, &listener, &fault))
+  if (!pack_mesh(path.c_str(), spheres, program.common().threads, model.path().c_str(), say_of_mesh,
+                 &listener, &fault))
     throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
-  Tool tool = Tool::read(model.path());
+  return Tool::read(model.path());
+}
+
+}  // namespace
+
+Tool tool_of_mesh(const Program& program, const std::string& path) {
+  Tool tool = packed(program, path, kSpheres);
   program.note(path + ": packed with " + std::to_string(tool.spheres().size()) +
                " spheres for this run; vpm-pack and vpm-graph make a .vpmg to keep, of other units "
                "and numbers too");
   return tool;
+}
+
+Tool solid_of_mesh(const Program& program, const std::string& path) {
+  return packed(program, path, 1);
 }
 
 }  // namespace vpm::tools

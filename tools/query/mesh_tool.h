@@ -18,4 +18,8 @@ bool is_mesh_file(const std::string& path);
 // where they are not built.
 Tool tool_of_mesh(const Program& program, const std::string& path);
 
+// Returns a model of a mesh for the surface that it keeps, with one sphere. Says and throws the
+// same.
+Tool solid_of_mesh(const Program& program, const std::string& path);
+
 }  // namespace vpm::tools

@@ -11,6 +11,7 @@ enum Cell : unsigned char {
   no,
   yes,
   either,  // one of the options that the column marks so is required
+  scene,   // one or more of the options that the column marks so are required
   required
 };
 
@@ -27,8 +28,10 @@ constexpr Row kTable[] = {
      {required, required, required, required, required, required},
      "give the .vpmg that vpm-graph wrote"},
     {"--cloud",
-     {required, required, required, no, required, yes},
-     "give the .vpmc that vpm-normals wrote, or --frames"},
+     {scene, scene, scene, no, scene, yes},
+     "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
+    {"--solid", {scene, scene, scene, yes, scene, yes}},
+    {"--bodies", {yes, no, no, no, no, no}},
     {"--pose", {either, either, no, no, either, no}},
     {"--poses", {either, either, required, no, either, no}, "give the path of the haptic device"},
     {"--batch", {yes, yes, no, no, yes, no}},
@@ -59,13 +62,10 @@ struct Pair {
 };
 
 constexpr Pair kExclusive[] = {
-    {"--pose", "--poses"},
-    {"--level", "--max-error"},
-    {"--level", "--for-scene"},
-    {"--max-error", "--for-scene"},
-    {"--level", "--deadline-us"},
-    {"--coherent", "--deadline-us"},
-    {"--camera-pose", "--camera-poses"},
+    {"--pose", "--poses"},        {"--level", "--max-error"},
+    {"--level", "--for-scene"},   {"--max-error", "--for-scene"},
+    {"--level", "--deadline-us"}, {"--coherent", "--deadline-us"},
+    {"--solid", "--view"},        {"--camera-pose", "--camera-poses"},
 };
 
 struct Need {
@@ -133,9 +133,10 @@ void refuse_missing_options(const CLI::App& app, Mode mode) {
   const std::size_t column = static_cast<std::size_t>(mode);
   std::vector<std::string> alternatives;
   bool has_one = false;
+  const bool has_scene = is_given(app, "--cloud") || is_given(app, "--solid");
   for (const Row& row : kTable) {
-    const bool given = is_given(app, row.option);
-    if (row.in_mode[column] == required && !given)
+    const bool given = is_given(app, row.option) || (row.in_mode[column] == scene && has_scene);
+    if ((row.in_mode[column] == required || row.in_mode[column] == scene) && !given)
       refuse_usage(std::string(row.option) + " is missing: " + row.advice);
     if (row.in_mode[column] != either) continue;
     alternatives.push_back(row.option);

@@ -4,14 +4,15 @@
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
 
 // Returns the job of each pose for a single tool.
-std::vector<Job> jobs_of(const std::vector<Pose>& poses) {
+std::vector<Job> jobs_of(const std::vector<AskedPose>& asked) {
   std::vector<Job> jobs;
-  for (const Pose& pose : poses) jobs.push_back({pose, 0});
+  for (const AskedPose& one : asked) jobs.push_back({one.pose, 0, one.solids});
   return jobs;
 }
 
@@ -25,34 +26,35 @@ class PoseQueries {
         query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
   void ask(const AskedPose& asked) {
-    const Result result = query_.run(scene_.scene(), asked.pose);
+    const Result result = query_.run(scene_.scene(), asked.pose, 0, asked.solids);
     write(asked, result);
     if (setup_.view) setup_.view->add(0, asked.pose, result, query_);
-    last_ = asked.pose;
+    last_ = asked;
   }
 
   void ask_together(const std::vector<AskedPose>& asked) {
-    const std::vector<Pose> poses = poses_of(asked);
-    std::vector<Result> results(poses.size());
-    query_.run(scene_.scene(), jobs_of(poses), results);
-    for (std::size_t k = 0; k < poses.size(); ++k) write(asked[k], results[k]);
-    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
-    last_ = poses.back();
+    std::vector<Result> results(asked.size());
+    query_.run(scene_.scene(), jobs_of(asked), results);
+    for (std::size_t k = 0; k < asked.size(); ++k) write(asked[k], results[k]);
+    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses_of(asked));
+    last_ = asked.back();
   }
 
   // Queries the last pose again, since a batch leaves no states of spheres.
-  void ask_last_again() { query_.run(scene_.scene(), last_); }
+  void ask_last_again() { query_.run(scene_.scene(), last_.pose, 0, last_.solids); }
 
   const LevelQuery& query() const { return query_; }
   // Returns the time of each answer, s.
   const std::vector<double>& seconds() const { return seconds_; }
-  const Pose& last() const { return last_; }
+  const Pose& last() const { return last_.pose; }
 
  private:
   void write(const AskedPose& asked, const Result& result) {
     scene_.see(asked.pose, 0, result);
-    output_.append(result_line(seconds_.size(), asked.id, result, query_.level(),
-                               setup_.options.measure, query_.reason(), {}));
+    nlohmann::ordered_json line = result_line(seconds_.size(), asked.id, result, query_.level(),
+                                              setup_.options.measure, query_.reason(), {});
+    if (setup_.arguments.bodies) line["bodies"] = bodies_of(query_.parts());
+    output_.append(line);
     seconds_.push_back(query_.seconds());
   }
 
@@ -61,7 +63,7 @@ class PoseQueries {
   ResultOutput& output_;
   LevelQuery query_;
   std::vector<double> seconds_;
-  Pose last_;
+  AskedPose last_;
 };
 
 }  // namespace
@@ -81,7 +83,7 @@ void run_poses(QuerySetup& setup) {
   scene.warn_at_end();
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
-  stats["cloud_points"] = scene.points();
+  if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
   add_level(stats, queries.query());
   write_last_spheres(setup, queries.query(), queries.last());
   write_stats_and_view(setup, std::move(stats));

@@ -50,6 +50,7 @@ nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id
   line["boundary"] = r.boundary;
   line["inside"] = r.inside;
   if (r.points) line["points"] = *r.points;
+  if (r.closure) line["closure"] = *r.closure;
   line["level"] = level;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
   if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);

@@ -23,7 +23,8 @@ struct StepOfReplay {
 // What a line says of the pose that was asked.
 struct AskedPose {
   Pose pose;
-  std::string id;  // JSON, as it was given with the pose; empty without one
+  std::string id;            // JSON, as it was given with the pose; empty without one
+  std::vector<Pose> solids;  // of each --solid; none: where the options say
 };
 
 // Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the

@@ -10,6 +10,7 @@
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
 #include "tools/query/mesh_tool.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -34,10 +35,11 @@ std::vector<Tool> read_tools(const Program& program, const std::vector<std::stri
   return tools;
 }
 
-// Returns the CPU for what no device computes (coherent poses, the measure as printed), unless a
-// device is named.
+// Returns the CPU for what no device computes (coherent poses, the measure as printed, solids),
+// unless a device is named.
 Device device_of(const Program& program, const Arguments& a) {
-  const bool is_on_cpu = a.coherent || a.measure == "paper";
+  const bool has_solids_only = !a.solids.empty() && a.cloud.empty();
+  const bool is_on_cpu = a.coherent || a.measure == "paper" || has_solids_only;
   return is_on_cpu && program.common().device == "auto" ? Device{} : program.device();
 }
 
@@ -77,7 +79,9 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
       arguments(a),
       level(level_request(a)),
       tools(read_tools(p, a.tools)),
+      solids(read_solids(p, a.solids)),
       points(denoising_of(a)) {
+  if (!solids.empty()) check_surfaces(tools, a.tools);
   options = query_options(program, a);
   if (!a.view.empty()) view.emplace(a.view, tools, a.tools, options);
 }

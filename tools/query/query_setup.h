@@ -27,6 +27,7 @@ struct QuerySetup {
   LevelRequest level;
   std::vector<Tool> tools;  // one per --tool
   QueryOptions options;
+  std::vector<Body> solids;      // one per --solid
   Denoising points;              // how points without a camera are read
   std::optional<PoseView> view;  // empty without --view
 };

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
@@ -31,23 +33,25 @@
 namespace vpm::tools {
 namespace {
 
-// Returns the scene of one body.
-Scene scene_with(const AnyBody& body) {
-  return HandleAccess::make<Body>(body);
+// Returns the scene of a frame and solids.
+Scene scene_with(const AnyBody& frame, const std::vector<Body>& solids) {
+  std::vector<Body> bodies{HandleAccess::make<Body>(frame)};
+  bodies.insert(bodies.end(), solids.begin(), solids.end());
+  return Scene(std::move(bodies));
 }
 
 // Path of the tool through a recording.
 class Replay {
  public:
   // Reads the recording and the path, which has `rate` steps per second. Prepares depth images on
-  // the device of the queries, and reads frames without a camera as `points` says. Throws what the
-  // readers throw, and Error(refused) if recording and path share no time or no frame can be used.
-  Replay(const Program& program, const ReplayArguments& arguments, double rate,
-         const Device& device, Denoising points);
+  // the device of the queries, and reads frames without a camera as the options say. The solids
+  // stay beside each frame. Throws what the readers throw, and Error(refused) if recording and path
+  // share no time or no frame can be used.
+  Replay(const QuerySetup& setup, double rate);
 
   const SampledPath& path() const { return path_; }
   // Returns the scene of the first frame that can be used, by which levels are chosen.
-  Scene first() const { return scene_with(*first_body_); }
+  Scene first() const { return scene_with(*first_body_, solids_); }
 
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen.
@@ -89,6 +93,7 @@ class Replay {
   ImportOptions import_;
   Device device_;
   Denoising points_;
+  std::vector<Body> solids_;
   ScheduleOptions schedule_;
   std::optional<AnyBody> first_body_;
   std::optional<Scene> scene_;  // the frame that the loop sees
@@ -122,21 +127,22 @@ RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 
-Replay::Replay(const Program& program, const ReplayArguments& arguments, double rate,
-               const Device& device, Denoising points)
-    : program_(program),
-      arguments_(arguments),
+Replay::Replay(const QuerySetup& setup, double rate)
+    : program_(setup.program),
+      arguments_(setup.arguments.replay),
       rate_(rate),
-      path_(read_path(program, arguments.trajectory, rate)),
-      import_(import_options(program, arguments.import)),
-      device_(device),
-      points_(points) {
-  recording_ =
-      open_recording(program, arguments.frames, recording_options(arguments, import_), import_);
-  note_recording(program, arguments.frames, recording_, import_);
+      path_(read_path(program_, arguments_.trajectory, rate)),
+      import_(import_options(program_, arguments_.import)),
+      device_(setup.options.device),
+      points_(setup.points),
+      solids_(setup.solids) {
+  const std::string& frames = arguments_.frames;
+  recording_ = open_recording(program_, frames, recording_options(arguments_, import_), import_);
+  note_recording(program_, frames, recording_, import_);
   if (!recording_.has_clock && path_.path().has_times())
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
-  schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
+  schedule_ = {rate, path_.steps(), start_time(), arguments_.frame_latency,
+               arguments_.repeat_frames};
   find_first_body();
 }
 
@@ -212,7 +218,7 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
-  scene_.emplace(scene_with(feed_->body()));
+  scene_.emplace(scene_with(feed_->body(), solids_));
   clock_.emplace(rate_, arguments_.realtime);
   for (std::size_t k = 0; k < path_.steps(); ++k) {
     // A loop that runs ahead of the clock waits for frames that a real stream would have brought in
@@ -220,14 +226,14 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
     const PreparedChange* change = arguments_.realtime ? nullptr : feed_->advance_to(k);
     clock_->begin_step();
     if (arguments_.realtime) change = feed_->advance_to(k);
-    if (change) scene_.emplace(scene_with(feed_->body()));
+    if (change) scene_.emplace(scene_with(feed_->body(), solids_));
     const CoupledStep step = ask(k, query, coupling);
     clock_->end_step();
     last_pose_ = step.tool;
     query_seconds_.push_back(query.seconds());
     if (view) view->see_frame(feed_->frame());
     if (view) view->add(0, step.tool, step.contact, query);
-    if (feed_->frame()) check.see(step.tool, 0, step.contact, *feed_->frame());
+    if (feed_->frame() && solids_.empty()) check.see(step.tool, 0, step.contact, *feed_->frame());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     if (change && !sizes_differ_) compare_size(*change);
@@ -320,7 +326,7 @@ void run_frames(QuerySetup& setup) {
   const std::optional<CouplingParameters> parameters = coupling_of(a, tool);
   const double rate =
       parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
-  Replay replay(setup.program, a.replay, rate, setup.options.device, setup.points);
+  Replay replay(setup, rate);
   const Pose first = replay.path().pose(0);
   LevelQuery query(tool, setup.options, setup.level, replay.first(), first);
   note_scale(setup.program, query);

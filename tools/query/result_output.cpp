@@ -24,9 +24,11 @@ constexpr CsvColumn kResult[] = {
     {"boundary", "/boundary"},
     {"inside", "/inside"},
     {"points", "/points"},
+    {"closure", "/closure"},
     {"level", "/level"},
     {"measure", "/measure"},
     {"level_reason", "/level_reason"},
+    {"bodies", "/bodies"},
 };
 
 constexpr CsvColumn kCoupling[] = {

@@ -8,6 +8,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
@@ -22,6 +23,7 @@
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -44,7 +46,6 @@ Json request_of(const std::string& line) {
 
 // Throws Error(refused) for what no answer is known to.
 void check(const Json& request) {
-  if (request.contains("solids")) refuse("solids are not measured here", {}, "leave them out");
   if (request.contains("camera_pose") && !request.contains("cloud"))
     refuse("a camera's pose without its image", {}, "give \"cloud\" beside it");
 }
@@ -63,6 +64,15 @@ Pose pose_of(const Json& request) {
   return from_untimed(pose.numbers, nullptr);
 }
 
+// Returns the poses of a request's solids; none if it has none.
+std::vector<Pose> solids_of(const Json& request, std::size_t solids) {
+  if (!request.contains("solids")) return {};
+  double deviation = 0;
+  std::vector<Pose> poses = poses_of_solids(request["solids"], deviation);
+  if (poses.size() != solids) refuse(misfit_of_solids(poses.size(), solids), {}, kSolidsAdvice);
+  return poses;
+}
+
 std::string id_of(const Json& request) {
   return request.contains("id") ? request["id"].dump() : std::string();
 }
@@ -79,6 +89,7 @@ class Server {
       : setup_(setup), output_(setup.arguments.output, result_columns()) {
     const std::string& cloud = setup.arguments.cloud;
     if (!cloud.empty()) see(cloud, read_scene(cloud, {}));
+    if (cloud.empty() && !setup.solids.empty()) scene_ = std::make_unique<CloudScene>(setup);
   }
 
   // Answers until the input ends. Throws only what concerns the streams.
@@ -105,7 +116,8 @@ class Server {
       id = id_of(request);
       check(request);
       if (request.contains("cloud")) see_cloud(request);
-      return has_pose(request) ? ask(pose_of(request), id) : seen(request, id);
+      return has_pose(request) ? ask(pose_of(request), solids_of(request, setup_.solids.size()), id)
+                               : seen(request, id);
     } catch (const Error& fault) {
       const std::string where = fault.where().empty() ? "" : fault.where() + ": ";
       return failure(id, where + fault.problem(), fault.hint());
@@ -128,10 +140,10 @@ class Server {
     return line;
   }
 
-  Line ask(const Pose& pose, const std::string& id) {
+  Line ask(const Pose& pose, const std::vector<Pose>& solids, const std::string& id) {
     if (!scene_) refuse("there is no scene yet", {}, "give \"cloud\", here or in a request before");
     if (!query_) make_query(pose);
-    const Result result = query_->run(scene_->scene(), pose);
+    const Result result = query_->run(scene_->scene(), pose, 0, solids);
     scene_->see(pose, 0, result);
     seconds_.push_back(query_->seconds());
     return result_line(seconds_.size() - 1, id, result, query_->level(), setup_.options.measure,

@@ -26,7 +26,7 @@ class SeveralTools {
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
   void ask(const std::vector<AskedPose>& asked, ResultOutput& output) {
     const std::vector<Pose> poses = poses_of(asked);
-    const std::vector<Result> results = timed_results(poses);
+    const std::vector<Result> results = timed_results(asked);
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools_;
       scene_.see(poses[k / tools_], tool, results[k]);
@@ -49,15 +49,15 @@ class SeveralTools {
   }
 
  private:
-  std::vector<Result> timed_results(std::span<const Pose> poses) {
+  std::vector<Result> timed_results(const std::vector<AskedPose>& asked) {
     std::vector<Job> jobs;
-    for (const Pose& pose : poses)
-      for (std::uint32_t t = 0; t < tools_; ++t) jobs.push_back({pose, t});
+    for (const AskedPose& one : asked)
+      for (std::uint32_t t = 0; t < tools_; ++t) jobs.push_back({one.pose, t, one.solids});
     std::vector<Result> results(jobs.size());
     const auto start = std::chrono::steady_clock::now();
-    if (poses.size() == 1) {  // the whole device answers each sooner
+    if (asked.size() == 1) {  // the whole device answers each sooner
       for (std::size_t t = 0; t < tools_; ++t)
-        results[t] = query_.run(scene_.scene(), poses.front(), t);
+        results[t] = query_.run(scene_.scene(), asked.front().pose, t, asked.front().solids);
     } else {
       query_.run(scene_.scene(), jobs, results);
     }
@@ -90,7 +90,7 @@ void run_several_tools(QuerySetup& setup) {
   note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
-  stats["cloud_points"] = scene.points();
+  if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
   stats["levels"] = tools.levels();
   write_stats_and_view(setup, std::move(stats));
 }

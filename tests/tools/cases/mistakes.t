@@ -99,7 +99,7 @@ $ vpm-query --cloud wall.vpmc --poses path.txt
 2> vpm-query: error: --tool is missing: give the .vpmg that vpm-graph wrote
 [2]
 $ vpm-query --tool cube.vpmg --poses path.txt
-2> vpm-query: error: --cloud is missing: give the .vpmc that vpm-normals wrote, or --frames
+2> vpm-query: error: --cloud is missing: give the .vpmc that vpm-normals wrote, or --solid or --frames
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --realtime
 2> vpm-query: error: --realtime does not go with poses in a cloud, chosen because --frames is not given: leave it out

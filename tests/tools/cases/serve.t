@@ -14,7 +14,7 @@ $ (printf '%s\n' 'no' '{"id":1}' '' '{"id":2,"pose":[0,0,1]}' '{"id":3,"pose":[0
 {"id":4,"error":"a pose must be a list of numbers"}
 {"id":5,"error":"cannot read gone.vpmc: No such file or directory"}
 {"id":6,"error":"\"cloud\" is no name of a file","hint":"write {\"pose\": [tx,ty,tz,qx,qy,qz,qw]} or {\"cloud\": \"scene.vpmc\"}, with an \"id\" if wanted"}
-{"id":8,"error":"solids are not measured here","hint":"leave them out"}
+{"id":8,"error":"\"solids\" has 1 pose, but --solid is given 0 times","hint":"give one for each, or leave \"solids\" out"}
 {"error":"ambiguous: it gives \"id\" twice","hint":"leave one of them out"}
 {"error":"a request is an object of JSON","hint":"write {\"pose\": [tx,ty,tz,qx,qy,qz,qw]} or {\"cloud\": \"scene.vpmc\"}, with an \"id\" if wanted"}
 {"id":11,"error":"a camera's pose without its image","hint":"give \"cloud\" beside it"}

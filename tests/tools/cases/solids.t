@@ -1,0 +1,80 @@
+# A tool among solids. The cube has an edge of 0.2 m, so what two of them share is known.
+
+$ cp $SOURCE/tests/tools/inputs/* .
+$ vpm-pack cube.off -o cube.vpmp --spheres 60 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 20 --quiet && vpm-graph cube.vpmp -o bare.vpmg --no-surface --quiet
+$ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --quiet
+$ echo "import json, sys; print([round(json.loads(l)['volume'], 10) + 0 for l in sys.stdin])" > near.py
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@0.15,0,0,0,0,0,1 --pose 0,0,0,0,0,0,1 > one.jsonl && python3 near.py < one.jsonl && $VALIDATE query-result one.jsonl
+[0.002]
+$ for x in 0 0.2 0.3; do vpm-query --tool cube.vpmg --solid cube.vpmg --pose $x,0,0,0,0,0,1 | python3 near.py; done
+[0.008]
+[0.0]
+[0.0]
+
+# Force and torque have the units of clouds: against a wall much larger than the tool, stiffness times volume.
+$ python3 -c "print('OFF 8 12 0'); [print(x, y, z) for z in (0, 1) for y in (-2, 2) for x in (-2, 2)]; print(*('3 0 2 3', '3 0 3 1', '3 4 5 7', '3 4 7 6', '3 0 1 5', '3 0 5 4', '3 2 6 7', '3 2 7 3', '3 0 4 6', '3 0 6 2', '3 1 3 7', '3 1 7 5'), sep='\n')" > wall.off
+$ vpm-query --tool cube.vpmg --solid wall.off --pose 0.1,0.2,-0.05,0,0,0,1 --stiffness 1e5 --quiet | python3 -c "import json, sys; r = json.load(sys.stdin); print([round(x, 3) + 0 for x in r['force'] + r['torque']], r['closure'] <= 1e-8)"
+[0.0, 0.0, -200.0, 0.0, 0.0, 0.0] True
+
+# A mesh is taken for the solid, and for both.
+$ vpm-query --tool cube.vpmg --solid cube.off@0.15,0,0,0,0,0,1 --pose 0,0,0,0,0,0,1 | cmp - one.jsonl
+$ vpm-query --tool cube.off --solid cube.off@0.15,0,0,0,0,0,1 --pose 0,0,0,0,0,0,1 --quiet | python3 near.py
+[0.002]
+
+# Solids move with the pose, in the order of --solid, or stay.
+$ printf '%s\n' '{"tool":[0,0,0,0,0,0,1],"solids":[[0.15,0,0,0,0,0,1],[0,0.1,0,0,0,0,1]]}' '{"id":"stay","pose":[0,0,0,0,0,0,1]}' '{"solids":[{"pose":[0.18,0,0,0,0,0,1]},{"position":{"x":0,"y":0,"z":9},"orientation":{"x":0,"y":0,"z":0,"w":1}}],"tool":{"pose":[0,0,0,0,0,0,1]}}' > moves.jsonl
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl > moved.jsonl && python3 near.py < moved.jsonl
+[0.006, 0.0004, 0.0008]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl --batch 3 | cmp - moved.jsonl
+$ vpm-query --tool cube.vpmg --tool cube.vpmg --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl | sed -n 's/"tool":1,//p' | cmp - moved.jsonl
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl --dump-config > call.json && $VALIDATE config.vpm-query call.json && vpm-query --config call.json | cmp - moved.jsonl
+
+# Bodies add up, whatever their order; --bodies lists the parts, which are what each gives alone.
+$ echo 'a=cube.vpmg@0.15,0,0.9,0,0,0,1 b=cube.vpmg@0,-0.13,0.9,0.1,0,0,0.99498743710662 pose=0,0,0.95,0,0,0,1' > names
+$ . ./names; vpm-query --tool cube.vpmg --cloud wall.vpmc --solid $a --solid $b --pose $pose > all.jsonl && vpm-query --tool cube.vpmg --solid $b --cloud wall.vpmc --solid $a --pose $pose | cmp - all.jsonl
+$ . ./names; vpm-query --tool cube.vpmg --cloud wall.vpmc --solid $a --solid $b --pose $pose --bodies > parts.jsonl && $VALIDATE query-result parts.jsonl && sed 's/,"bodies":.*/}/' parts.jsonl | cmp - all.jsonl
+$ . ./names; for s in "--cloud wall.vpmc" "--solid $a" "--solid $b"; do vpm-query --tool cube.vpmg $s --pose $pose; done > alone.jsonl; python3 -c "import json; r = json.load(open('parts.jsonl')); alone = [json.loads(l) for l in open('alone.jsonl')]; print([p == {'body': k} | {f: alone[k][f] for f in ('volume', 'force', 'torque')} for k, p in enumerate(r['bodies'])], r['volume_fraction'] == sum(o['volume_fraction'] for o in alone))"
+[True, True, True] True
+$ . ./names; vpm-query --tool cube.vpmg --cloud wall.vpmc --solid $a --pose $pose --bodies -o parts.csv && python3 -c "import csv, json; r = next(csv.DictReader(open('parts.csv'))); print(len(json.loads(r['bodies'])), 0 <= float(r['closure']) <= 1e-8)"
+2 True
+
+# What cannot be measured is refused, with the cure.
+$ vpm-query --tool cube.vpmg --solid bare.vpmg --pose 0,0,0,0,0,0,1; vpm-query --tool bare.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1
+2> vpm-query: error: bare.vpmg: the tool model keeps no surface, by which solids are measured; make it again by vpm-graph, without --no-surface
+2> vpm-query: error: bare.vpmg: the tool model keeps no surface, by which solids are measured; make it again by vpm-graph, without --no-surface
+[1]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --poses moves.jsonl; vpm-query --tool cube.vpmg --cloud wall.vpmc --poses moves.jsonl
+2> vpm-query: error: moves.jsonl, line 1: "solids" has 2 poses, but --solid is given 1 time; give one for each, or leave "solids" out
+2> vpm-query: error: moves.jsonl, line 1: "solids" has 2 poses, but --solid is given 0 times; give one for each, or leave "solids" out
+[1]
+$ for l in '{"tool":[0,0,0,0,0,0,1],"solids":[]}' '{"tool":[0,0,0,0,0,0,1],"solids":[0,0,0,0,0,0,1]}' '{"tool":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0]]}' '{"tool":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0,0]]}' '{"tool":3}'; do echo "$l" | vpm-query --tool cube.vpmg --solid cube.vpmg --poses -; done
+2> vpm-query: error: standard input, line 1: "solids" is no list of poses; write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]
+2> vpm-query: error: standard input, line 1: "solids" is no list of poses; write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]
+2> vpm-query: error: standard input, line 1: solid 0 of "solids": found 6 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row), or 12 without the last row
+2> vpm-query: error: standard input, line 1: solid 0 of "solids": the quaternion has length 0.000000 instead of 1; give x,y,z,w of a unit quaternion
+2> vpm-query: error: standard input, line 1: no pose in the object; it has "tool"; give "pose" (7 numbers) or "matrix" (4x4 by rows), or "position" with x, y, z and "orientation" with x, y, z, w
+[1]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@1,2,3 --pose 0,0,0,0,0,0,1
+2> vpm-query: error: --solid: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '1,2,3'
+[2]
+$ vpm-query --tool cube.vpmg --solid gone.vpmg@1,2,3,0,0,0,1 --pose 0,0,0,0,0,0,1
+2> vpm-query: error: cannot read gone.vpmg: No such file or directory
+[1]
+$ vpm-query --tool cube.vpmg --solid wall.vpmc --pose 0,0,0,0,0,0,1
+2> vpm-query: error: wall.vpmc: this is a cloud (.vpmc); needed is a tool model (.vpmg), which vpm-graph writes
+[1]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --measure paper
+2> vpm-query: error: the measure as printed knows no solids; leave the measure or the solids out
+[2]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --for-scene
+2> vpm-query: error: a level by scene or deadline is chosen by points, and the scene has solids only; leave that choice out, or add a cloud
+[2]
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --view v.html
+2> vpm-query: error: --solid and --view exclude each other: leave one of them out
+[2]
+$ vpm-query --tool cube.vpmg --solid - --pose 0,0,0,0,0,0,1
+2> vpm-query: error: --solid is a file: standard input holds none
+[2]
+$ printf '%s\n' '{"time":0,"pose":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0,1]]}' > path.txt; vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --coupling stiffness=500,damping=5 --stiffness 2e4
+2> vpm-query: error: path.txt, line 1: "solids" do not move along a path; leave them out
+[1]

@@ -1,0 +1,42 @@
+// Solids of the scene: those of --solid, and what each body gives.
+#pragma once
+
+#include <vpm/level_query.h>
+#include <vpm/scene.h>
+#include <vpm/tool.h>
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/common/program.h"
+
+namespace vpm::tools {
+
+// A value of --solid.
+struct SolidArgument {
+  std::string name;
+  Pose at;  // mesh to world
+};
+
+// Takes a value apart at its last @, unless a file has all of it as its name. Throws what
+// pose_from_text throws, naming the option.
+SolidArgument solid_from_text(const std::string& text);
+
+// Reads the solids, models or meshes, and prepares them. Throws Error(refused) also for a model
+// that keeps no surface.
+std::vector<Body> read_solids(const Program& program, const std::vector<std::string>& texts);
+
+// Throws Error(refused), naming the file, for a tool that keeps no surface, which solids need.
+void check_surfaces(std::span<const Tool> tools, const std::vector<std::string>& names);
+
+// Says that there are poses of `given` solids, but another number of --solid.
+std::string misfit_of_solids(std::size_t given, std::size_t solids);
+inline constexpr const char* kSolidsAdvice = "give one for each, or leave \"solids\" out";
+
+// Returns the list of `bodies` in a line of results.
+nlohmann::ordered_json bodies_of(const std::vector<Result>& parts);
+
+}  // namespace vpm::tools
