@@ -81,10 +81,10 @@ bool take_matrix(const std::vector<double>& numbers, Candidate& candidate) {
   candidate.file.intrinsics = *found;
   if (has_unit_border(numbers)) return true;
   candidate.fault =
-      "the last column of its matrix is not 0, or the last row not 0 0 0 1, as if "
-      "it were of another camera beside this one, or a pose";
-  candidate.hint = "if fx, fy, cx and cy in it are those of this image, give `intrinsics` " +
-                   intrinsics_text(*found);
+      "its matrix has a last column that is not 0, or a last row that is not 0 0 0 1, like that of "
+      "another camera or a pose";
+  candidate.hint =
+      "if fx, fy, cx and cy are this image's, give `intrinsics` " + intrinsics_text(*found);
   return true;
 }
 

@@ -17,7 +17,7 @@ class LineFit {
     n_ += 1, s_ += slope, p_ += pixel, ss_ += slope * slope, sp_ += slope * pixel;
     pp_ += pixel * pixel;
   }
-  // Returns the variance of slopes times n^2, which is mere rounding if all are equal.
+  // Returns n^2 times the variance of the slopes. It is 0 but for rounding if all are equal.
   double spread() const { return n_ * ss_ - s_ * s_; }
   bool solvable() const { return n_ >= 2 && spread() > 1e-12 * n_ * ss_; }
   double focal() const { return covariance() / spread(); }
@@ -35,7 +35,7 @@ class LineFit {
   double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0, pp_ = 0;
 };
 
-// Fits a grid's columns as a line over x/z, and its rows as a line over y/z.
+// Fits column = fx x/z + cx and row = fy y/z + cy to the points of a grid.
 struct GridLines {
   LineFit column_of_x, row_of_y, column_of_y, row_of_x;
   std::size_t seen = 0;
@@ -138,8 +138,8 @@ std::string words_of(const PinholeFit& fit, const PointSet& points) {
                   k.fy);
   } else {
     std::snprintf(text, sizeof text,
-                  "point (%zu, %zu) is %.3g pixels away from where the pinhole camera "
-                  "fx %.6g fy %.6g cx %.6g cy %.6g sees it (at most %.3g is accepted)",
+                  "point (%zu, %zu) is %.3g pixels from where fx %.6g fy %.6g cx %.6g cy %.6g see "
+                  "it, more than %.3g",
                   fit.point % points.width, fit.point / points.width, fit.residual, k.fx, k.fy,
                   k.cx, k.cy, kPinholeTolerance);
   }

@@ -29,7 +29,7 @@ struct PinholeFit {
 PinholeFit fit_pinhole(const PointSet& points);
 PinholeFit fit_of(const PointSet& points, const Intrinsics& intrinsics);
 
-// Returns for example "point (3, 4) is 2.1 pixels away from where …", or that the grid is turned or
+// Returns for example "point (3, 4) is 2.1 pixels from where …", or that the grid is turned or
 // mirrored, for one that does not fit.
 std::string words_of(const PinholeFit& fit, const PointSet& points);
 

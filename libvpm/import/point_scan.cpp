@@ -28,7 +28,7 @@ struct PointFrame {
   std::optional<Pose> to_world;          // pose of those axes; translation in the file's unit
 };
 
-// A grid's points in the frame of their camera, and that camera.
+// Points of a grid, in their camera's frame, with that camera.
 struct OrganisedView {
   PointSet points;
   PinholeFit fit;
@@ -65,8 +65,8 @@ void refuse_other_axes(const PointSet& points, const PointFrame& frame,
 [[noreturn]] void refuse_fit(const PinholeFit& failed, const PointSet& points,
                              const PointFrame& frame, bool is_given, const std::string& name) {
   if (is_given)
-    refuse("the organised cloud does not fit the intrinsics given: " + words_of(failed, points),
-           name, "leave `intrinsics` out to have them recovered");
+    refuse("its points do not fit the intrinsics given: " + words_of(failed, points), name,
+           "leave `intrinsics` out to have them recovered");
   refuse("the organised cloud fits no pinhole camera with x right, y down, z forward: " +
              words_of(failed, points),
          name, cure_of(points, frame.to_world.has_value()));
@@ -160,11 +160,11 @@ std::string text_of(const Pose& pose) {
   return text;
 }
 
-// The pose of the points' frame that the user or the file tells.
+// Pose of the points' frame in the world, from the user or the file.
 struct ToldPose {
   std::optional<Pose> pose;  // m
   bool is_viewpoint = false;
-  bool is_among_points = false;  // a viewpoint that stands where the points do, in the world
+  bool is_among_points = false;  // points and viewpoint stand in the world's frame already
 };
 
 ToldPose told_pose(const PointSet& points, const ImportOptions& options, double units_per_metre) {

@@ -32,9 +32,7 @@ std::string other_size_text(const Camera& camera) {
     return "; are these the intrinsics of this image?";
   const Intrinsics scaled{k.fx / across, k.fy / across, (k.cx + 0.5) / across - 0.5,
                           (k.cy + 0.5) / across - 0.5};
-  return text_of(
-             "; it is the middle of %.0f x %.0f pixels, and if the image was scaled from that, ",
-             2 * k.cx + 1, 2 * k.cy + 1) +
+  return text_of("; if that was scaled from %.0f x %.0f, ", 2 * k.cx + 1, 2 * k.cy + 1) +
          "give `intrinsics` " + intrinsics_text(scaled);
 }
 

@@ -26,8 +26,7 @@ constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
 // Least volume relative to area times diagonal. Rounding gives a flat closed mesh about 1e-16; the
 // thinnest plate worth packing has far more.
 constexpr double kFlat = 1e-12;
-constexpr const char* kMoveToOrigin = "move it to the origin before it is saved in such numbers";
-constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
+constexpr const char* kMoveToOrigin = "move it to the origin before it is saved";
 
 std::string text_of(Vec3 p) {
   char text[96];
@@ -39,13 +38,10 @@ std::string counted(std::size_t count, const std::string& thing, const std::stri
   return std::to_string(count) + " " + (count == 1 ? thing : things);
 }
 
-// Returns "; at A, B, C, ...": the first few places of a list.
+// Returns ", at A and more": the first place of a list.
 template <class T, class Place>
-std::string places(const std::vector<T>& list, Place place) {
-  std::string text;
-  for (std::size_t k = 0; k < std::min(list.size(), kPlacesShown); ++k)
-    text += (k == 0 ? ", at " : ", ") + place(list[k]);
-  return text + (list.size() > kPlacesShown ? " and more" : "");
+std::string first_place(const std::vector<T>& list, Place place) {
+  return list.empty() ? "" : ", at " + place(list.front()) + (list.size() > 1 ? " and more" : "");
 }
 
 Box box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
@@ -233,7 +229,7 @@ class Check {
       char text[160];
       std::snprintf(text, sizeof text, "a hole is %.3g m wide, more than %.3g m, through ",
                     scale_ * width, scale_ * max_hole);
-      refuse(text + text_of_rim(loop), mesh_.name, "close it, or give a wider `max_hole`");
+      refuse(text + place_of(loop), mesh_.name, "close it, or give a wider `max_hole`");
     }
   }
 
@@ -271,27 +267,21 @@ class Check {
     topology_ = std::move(done.topology);
   }
 
-  // Returns "A, B, C, ...".
-  std::string text_of_rim(const BoundaryLoop& loop) const {
-    std::string text;
-    for (std::size_t v = 0; v < std::min(loop.vertices.size(), kRimPlacesShown); ++v)
-      text += (v > 0 ? ", " : "") + text_of(result_.solid.vertices[loop.vertices[v]]);
-    return text + (loop.vertices.size() > kRimPlacesShown ? ", ..." : "");
+  // Returns where a hole is: a corner of its rim.
+  std::string place_of(const BoundaryLoop& loop) const {
+    return text_of(result_.solid.vertices[loop.vertices.front()]);
   }
 
-  // Returns "around 2 holes: a loop of 8 edges through A, B, C, ...; ...".
+  // Returns "8 edges of one triangle in 2 holes, the largest a loop of 5 edges through A".
   std::string text_of_holes() const {
     const std::vector<BoundaryLoop> loops = boundary_loops(topology_, result_.solid.triangles);
-    std::string text = ", around " + counted(loops.size(), "hole", "holes") + ": ";
-    for (std::size_t k = 0; k < std::min(loops.size(), kPlacesShown); ++k) {
-      const BoundaryLoop& loop = loops[k];
-      const std::size_t edges = loop.vertices.size() - (loop.closed ? 0 : 1);
-      text += (k > 0 ? "; " : "") + std::string(loop.closed ? "a loop of " : "a rim of ") +
-              counted(edges, "edge", "edges") + " through " + text_of_rim(loop);
-    }
-    if (loops.size() > kPlacesShown)
-      text += "; and " + std::to_string(loops.size() - kPlacesShown) + " more";
-    return text;
+    const BoundaryLoop& largest = loops.front();
+    const std::size_t edges = largest.vertices.size() - (largest.closed ? 0 : 1);
+    return counted(topology_.boundary.size(), "edge", "edges") + " of one triangle in " +
+           counted(loops.size(), "hole, ", "holes, the largest ") +
+           (largest.closed ? "a loop" : "a rim") +
+           (loops.size() > 1 ? " of " + counted(edges, "edge", "edges") : "") + " through " +
+           place_of(largest);
   }
 
   void refuse_defects() {
@@ -303,27 +293,24 @@ class Check {
     const auto add = [&](const std::string& defect) {
       defects += (defects.empty() ? "" : "; ") + defect;
     };
-    if (!topology_.boundary.empty()) {
-      add("the mesh is open: " +
-          counted(topology_.boundary.size(), "edge belongs", "edges belong") +
-          " to one triangle only" + text_of_holes());
-    }
+    if (!topology_.boundary.empty()) add("the mesh is open: " + text_of_holes());
     if (!topology_.non_manifold.empty()) {
-      add("the mesh is non-manifold: " +
+      add((defects.empty() ? "the mesh is non-manifold: " : "and non-manifold: ") +
           counted(topology_.non_manifold.size(), "edge belongs", "edges belong") +
-          " to more than two triangles" + places(topology_.non_manifold, edge_place));
+          " to more than two triangles" +
+          (defects.empty() ? first_place(topology_.non_manifold, edge_place) : ""));
     }
     if (topology_.boundary.empty() && !topology_.pinched.empty()) {
       add("the mesh is non-manifold: the surface touches itself in " +
           counted(topology_.pinched.size(), "vertex", "vertices") +
-          places(topology_.pinched, vertex_place));
+          first_place(topology_.pinched, vertex_place));
     }
     if (defects.empty()) return;
     if (topology_.duplicate_triangles > 0) {
       add(counted(topology_.duplicate_triangles, "triangle is", "triangles are") +
           " listed more than once");
     }
-    refuse(defects + ".", mesh_.name, "Only a closed surface has an inside: " + advice());
+    refuse(defects, mesh_.name, advice());
   }
 
   // Returns what makes this mesh pass; nothing in a trial, which asks only whether it passes.
@@ -389,7 +376,7 @@ class Check {
       return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / (3 * scale_));
     };
     warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
-         places(first, place) +
+         first_place(first, place) +
          "; what it encloses at least once is the solid, and overlaps count once");
   }
 

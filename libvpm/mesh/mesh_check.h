@@ -57,10 +57,9 @@ struct CheckedSolid {
 };
 
 // Checks, repairs and orients a mesh. Throws Error(refused) for meshes that are empty; open,
-// non-manifold or one-sided beyond the requested repair (naming rims of holes by their first
-// vertices); without volume; of an extent outside 1e-30 to 1e30 m; or
-// that meet or nest in more places than WorkLimit allows. Throws Error(invalid_argument) for
-// options out of range.
+// non-manifold or one-sided beyond the requested repair (naming a corner of the largest hole);
+// without volume; of an extent outside 1e-30 to 1e30 m; or that meet or nest in more places than
+// WorkLimit allows. Throws Error(invalid_argument) for options out of range.
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {},
                         const MeshProgress& progress = {});
 

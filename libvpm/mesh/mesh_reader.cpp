@@ -209,8 +209,8 @@ std::string coarse_coordinates(const RawMesh& mesh) {
   if (!coarse) return "";
   char text[200];
   std::snprintf(text, sizeof text,
-                "its coordinates lie up to %.3g from the origin, where %s are %.2g apart, which is "
-                "coarse for a mesh that is %.3g across",
+                "its coordinates lie up to %.3g from the origin, where %s are %.2g apart, coarse "
+                "for a mesh of %.3g",
                 coarse->farthest, coarse->numbers(), coarse->step, diagonal);
   return text;
 }

@@ -55,7 +55,7 @@ class Advice {
       return "`repair` holes, voxel or flood may close it, or mend it in a mesh editor";
     const std::string renew = advice_of_new_surface();
     return !renew.empty()
-               ? renew + ", or mend it in a mesh editor"
+               ? renew
                : "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
   }
 

@@ -326,8 +326,7 @@ bool may_hold_names(const std::string& line) {
 }
 
 constexpr const char* kNamesHint =
-    "name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz where w is first, after "
-    "timestamp if there are times";
+    "name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz";
 
 }  // namespace
 

@@ -95,13 +95,12 @@ MeasuredCheck::Found MeasuredCheck::found() const {
 
 std::optional<Remark> MeasuredCheck::remark(const Found& found) const {
   if (found.unmeasured == 0) return std::nullopt;
-  return Remark{true, "at " + std::to_string(found.unmeasured) + " of " +
-                          std::to_string(found.poses) +
-                          (tools_.size() > 1 ? " poses of tools" : " poses") +
-                          (poses_.stride() > 1 ? " that were looked at" : "") +
-                          " a quarter or more of what the tool has behind the surface lies where "
-                          "nothing was measured: no volume counts there; move the camera, or fill "
-                          "the holes"};
+  return Remark{true,
+                "at " + std::to_string(found.unmeasured) + " of " + std::to_string(found.poses) +
+                    (tools_.size() > 1 ? " poses of tools" : " poses") +
+                    (poses_.stride() > 1 ? " looked at" : "") +
+                    " a quarter or more of the tool behind the surface lies where nothing "
+                    "was measured, and counts for nothing: move the camera, or fill the holes"};
 }
 
 }  // namespace vpm

@@ -56,7 +56,7 @@ MESHES = [
      "small.off --for-scene wall.vpmc --max-radius 0.1", BRICK),
     ("foil.off", "pack it in parts", "plate.off", 0.05),
     ("inner.off", "turn it over if it is a cavity", "cavity.off", 7 / 8),
-    ("far.stl", "move it to the origin before it is saved in such numbers", "near.stl", 1),
+    ("far.stl", "move it to the origin before it is saved", "near.stl", 1),
     ("cut.stl", "save it again, or fetch all of it", "near.stl", 1),
     ("crossing.off", "save triangles in the program that wrote it", "cube.off", 1),
     ("binary.off", "save it as text", "text.off", 1),

@@ -20,7 +20,7 @@ $ echo '{"K": [60, 1, 31.5, 0, 60, 23.5, 0, 0, 1], "D": [0.1, 0, 0, 0, 0]}' > i.
 2> vpm-normals: warning: i.json: the lens's distortion in it is not used: the depth image must be a rectified one
 $ printf '60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n' > scannet.txt; printf '\357\273\27760 60 31.5 23.5\n' > mark.txt; printf '\377\376' > wide.txt; printf '60 60 31.5 23.5\n' | iconv -t UTF-16LE >> wide.txt; echo '{"cameraMatrix": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' > key.json; printf 'camera_model: pinhole\nintrinsics: [60, 60, 31.5, 23.5]\n' > kalibr.yaml; for k in scannet.txt mark.txt wide.txt key.json kalibr.yaml; do vpm-normals wall.pgm -o $k.vpmc --intrinsics $k && cmp $k.vpmc wall.vpmc; done
 $ for t in '60 0 31.5 45 0 60 23.5 0 0 0 1 0' '<?xml version="1.0"?><opencv_storage></opencv_storage>' '\037\213' '{"M1": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1], "M2": [61, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' '{"camera_model": "omni", "intrinsics": [1, 60, 60, 31.5, 23.5]}'; do printf "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
-2> vpm-normals: error: i.txt: the last column of its matrix is not 0, or the last row not 0 0 0 1, as if it were of another camera beside this one, or a pose; if fx, fy, cx and cy in it are those of this image, give --intrinsics 60,60,31.5,23.5
+2> vpm-normals: error: i.txt: its matrix has a last column that is not 0, or a last row that is not 0 0 0 1, like that of another camera or a pose; if fx, fy, cx and cy are this image's, give --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: i.txt: this is XML, which is not read for intrinsics; write it as .yml, which OpenCV does where the file's name ends so
 2> vpm-normals: error: i.txt: this is compressed by gzip; unpack it first: gunzip
 2> vpm-normals: error: i.txt: it holds several cameras: M1, M2; give the numbers of one as --intrinsics fx,fy,cx,cy
@@ -74,7 +74,7 @@ $ for t in '0 0 1 0 0 0 2' '0 0 1 0 0 0 nan' '1 0 0 0\n0 1 0 0\n0 0 1 1\n0 0 0 2
 2> vpm-query: error: standard input, line 1: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
 [1]
 $ for t in '# tx ty tz q0 q1 q2 q3\n0 0 1 1 0 0 0' '# Format: timestamp tx ty tz qw qx qy qz\n0 0 1 1 0 0 0' '{"time": 0, "stamp": 0, "pose": [0, 0, 1, 0, 0, 0, 1]}' '1 0 0 0 0 1 0 0 0 0 -1 1' '1 2 3 4 5'; do printf "$t\n" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
-2> vpm-query: error: standard input, line 2: line 1 seems to tell the order of the numbers, but not clearly: # tx ty tz q0 q1 q2 q3; name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz where w is first, after timestamp if there are times
+2> vpm-query: error: standard input, line 2: line 1 seems to tell the order of the numbers, but not clearly: # tx ty tz q0 q1 q2 q3; name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz
 2> vpm-query: error: standard input, line 2: found 7 numbers where the line of names has 8 (line 1); let the names in it be those of the numbers, in their order
 2> vpm-query: error: standard input, line 1: both "time" and "stamp" in the object; give one time
 2> vpm-query: error: standard input, line 1: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation

@@ -22,7 +22,7 @@ file 3071 0
 $ vpm-normals wall.ply -o scattered.vpmc --intrinsics 60,60,31.5,23.5 --force
 2> vpm-normals: warning: wall.ply: --intrinsics is not used: it holds points with normals, not an image
 $ vpm-normals grid.pcd -o x.vpmc --intrinsics 90,90,31.5,23.5
-2> vpm-normals: error: grid.pcd: the organised cloud does not fit the intrinsics given: point (0, 0) is 15.7 pixels away from where the pinhole camera fx 90 fy 90 cx 31.5 cy 23.5 sees it (at most 0.5 is accepted); leave --intrinsics out to have them recovered
+2> vpm-normals: error: grid.pcd: its points do not fit the intrinsics given: point (0, 0) is 15.7 pixels from where fx 90 fy 90 cx 31.5 cy 23.5 see it, more than 0.5; leave --intrinsics out to have them recovered
 [1]
 
 # Wrong usage is refused.
@@ -66,7 +66,7 @@ $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report wall.v
 2> vpm-normals: error: --output and --report would both be written to wall.vpmc; name two files
 [2]
 $ vpm-normals wall.png -o outside.vpmc --intrinsics 600,600,319.5,239.5
-2> vpm-normals: warning: wall.png: the principal point of 600,600,319.5,239.5 lies outside of the image of 64 x 48 pixels; it is the middle of 640 x 480 pixels, and if the image was scaled from that, give --intrinsics 60,60,31.5,23.5
+2> vpm-normals: warning: wall.png: the principal point of 600,600,319.5,239.5 lies outside of the image of 64 x 48 pixels; if that was scaled from 640 x 480, give --intrinsics 60,60,31.5,23.5
 2> vpm-normals: warning: wall.png: the focal lengths of 600,600,319.5,239.5 are improbable for an image of 64 x 48 pixels; are these the intrinsics of this image's size?
 
 # Unsuitable inputs are refused.

@@ -44,7 +44,7 @@ $ sed 's/^4 3 2 1 0$/4 0 1 2 3/' cube.off > turned.off && vpm-pack turned.off --
 2> vpm-pack: note: turned.off: 4 edges had neighbours of opposite orientation; 2 triangles were turned to face outward
 2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 m
 $ sed -e '2s/6/5/' -e '$d' cube.off > open.off && vpm-pack open.off -o open.vpmp
-2> vpm-pack: error: open.off: the mesh is open: 4 edges belong to one triangle only, around 1 hole: a loop of 4 edges through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1). * (glob)
+2> vpm-pack: error: open.off: the mesh is open: 4 edges of one triangle in 1 hole, a loop through (0, 1, 0); * (glob)
 [1]
 $ printf 'OFF\n1000000000000 1 0\n' | vpm-pack - -o huge.vpmp
 2> vpm-pack: error: standard input: the header says 1000000000000 vertices and 1 faces, but the file has only 22 bytes; it is truncated or damaged

@@ -2,7 +2,7 @@
 
 $ printf 'OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n' > open.off
 $ vpm-pack open.off -o open.vpmp
-2> vpm-pack: error: open.off: the mesh is open: 4 edges belong to one triangle only, around 1 hole: a loop of 4 edges through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1). Only a closed surface has an inside: give --repair to fill planar and small holes
+2> vpm-pack: error: open.off: the mesh is open: 4 edges of one triangle in 1 hole, a loop through (0, 1, 0); give --repair to fill planar and small holes
 [1]
 $ vpm-pack open.off --repair --spheres 1 -o filled.vpmp --report filled.json
 2> vpm-pack: note: open.off: filled a planar hole of 4 edges about (0, 0.5, 0.5)

@@ -53,7 +53,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o cube.vpmg
 2> vpm-query: error: --output would overwrite the input cube.vpmg; name another output, or give --force
 [2]
 $ vpm-pack open.off -o new.vpmp
-2> vpm-pack: error: open.off: the mesh is open: 3 edges belong to one triangle only, around 1 hole: a loop of 3 edges through (0.1, 0.1, 0.1), (0.1, -0.1, 0.1), (0.1, -0.1, -0.1). * (glob)
+2> vpm-pack: error: open.off: the mesh is open: 3 edges of one triangle in 1 hole, a loop through (0.1, 0.1, 0.1); * (glob)
 [1]
 $ vpm-query --tool missing.vpmg --cloud wall.vpmc --poses path.txt
 2> vpm-query: error: cannot read missing.vpmg: No such file or directory
