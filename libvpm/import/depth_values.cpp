@@ -55,11 +55,12 @@ bool has_many_values(std::span<const float> values) {
   return std::count(found.begin(), found.end(), true) >= kMany;
 }
 
-constexpr float kFewest = 256;  // values that are all smaller are of 8 bits
+constexpr float kFewest = 256;  // 8-bit values are smaller
 
-// True if the lower byte of some values is in use: otherwise they may be of 8 bits, scaled.
+// True if the lower byte of one value in a hundred is not 0. Otherwise the values may be 8-bit
+// ones, times 256.
 bool have_low_bytes(std::span<const float> values) {
-  constexpr std::size_t kSome = 100;  // one value of so many
+  constexpr std::size_t kSome = 100;
   std::size_t measured = 0, low = 0;
   for (const float value : values) {
     if (!is_value(value) || value == 65535) continue;
@@ -81,9 +82,9 @@ std::vector<double> different_values(std::span<const float> values) {
 }
 
 constexpr double kLevels = 255;       // that 8 bits have, beside 0
-constexpr std::size_t kFewTell = 32;  // levels that are on a scale by chance, at most
-constexpr double kWide = 8;           // units: narrower steps are met by any value
-constexpr double kRounding = 1;       // of a level, in units
+constexpr std::size_t kFewTell = 32;  // so many different values are on one scale by no chance
+constexpr double kWide = 8;           // units; any value is near a multiple of narrower steps
+constexpr double kRounding = 1;       // units by which a program may have rounded a level
 
 // Returns the step of which all values are multiples, up to the 255th, if that is no step of a
 // sensor: not a whole number of units, or one of 5 cm or more. Returns 0 if there is none.
@@ -106,7 +107,7 @@ double even_step(std::span<const double> values, double units_per_metre) {
 // steps. Returns 0 if there is none. Small values do not tell, since rounding hides their steps.
 double even_factor(std::span<const double> values) {
   constexpr double kSmall = 256;        // units
-  constexpr double kTells = 2 * kWide;  // units: step beside which a quarter of it is no rounding
+  constexpr double kTells = 2 * kWide;  // units; a quarter of narrower steps is rounding
   const auto from =
       static_cast<std::size_t>(std::ranges::lower_bound(values, kSmall) - values.begin());
   const std::span<const double> large = values.subspan(from);
@@ -175,9 +176,9 @@ std::uint16_t rotated(std::uint16_t bits) {
   return static_cast<std::uint16_t>((bits >> 3) | (bits << 13));
 }
 
-// True if a number divides nearly all values, as where they are those of a sensor's steps.
+// True if 2, 3, 5 or 7 divides nearly all values, as it does where a sensor measures in such steps.
 bool have_common_step(std::span<const float> values) {
-  constexpr std::size_t kFew = 10;  // one value of so many
+  constexpr std::size_t kFew = 10;  // one value in ten may be none of its multiples
   for (const int step : {2, 3, 5, 7}) {
     std::size_t measured = 0, others = 0;
     for (const float value : values) {
@@ -190,11 +191,11 @@ bool have_common_step(std::span<const float> values) {
   return false;
 }
 
-// What neighbours that differ tell of a rotation by three bits.
+// Counts what neighbouring pixels of different values tell of a rotation by three bits.
 struct RotationSigns {
   std::size_t pairs = 0;
-  std::size_t nearer = 0;   // pairs that are eight times nearer, or more, once rotated back
-  std::size_t crossed = 0;  // those of a low and a high value that are neighbours only then
+  std::size_t nearer = 0;   // pairs whose difference is an eighth, or less, once rotated back
+  std::size_t crossed = 0;  // pairs of a low and a high value that are close once rotated back
 };
 
 RotationSigns rotation_signs(std::span<const float> values, std::size_t width) {
@@ -214,8 +215,9 @@ RotationSigns rotation_signs(std::span<const float> values, std::size_t width) {
   return signs;
 }
 
-// Returns what rotated values would be, "1.03 m (SUN3D)", by the unit that is told or either usual
-// one. `median` is that of the values rotated back.
+// Returns the rest of an advice to rotate values back: the median depth that would result, as
+// ", which makes that 1.03 m (SUN3D)", in the unit that the user tells, otherwise in millimetres or
+// tenths of them. `median` is that of the values rotated back.
 std::string rotated_back_text(double median, const std::optional<double>& units_per_metre) {
   constexpr double kRoom = 4, kFarthest = 10;       // m: medians of depth cameras
   constexpr double kUsual = 1000, kTenths = 10000;  // units per metre
@@ -229,10 +231,11 @@ std::string rotated_back_text(double median, const std::optional<double>& units_
          " (APC)";
 }
 
-// Returns a warning if nearly all values may be rotated by three bits. They surely are where they
-// cross from the highest values to the lowest between neighbours. Multiples of 8 may be so because
-// a sensor's steps, or a program's, are so: of many of them it is told what they would be if they
-// were rotated, unless that is nearer than depth cameras measure, or they have a larger step.
+// Returns a warning if nearly all values may be rotated by three bits. They surely are where
+// neighbouring pixels go from the highest values to the lowest. Otherwise they are multiples of 8,
+// which a sensor or a program may also have measured in. If there are many different ones, the
+// warning tells the depths that they would be; there is none if those would be nearer than depth
+// cameras measure, or if the values have steps larger than 8.
 Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
                            const std::optional<double>& units_per_metre) {
   constexpr double kNearest = 0.3;  // m: median rotated back
@@ -263,7 +266,7 @@ Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
 // bits, rotated by three, or like a Kinect's raw disparity.
 Remarks coding_suspicions(std::span<const float> values, std::size_t width,
                           const std::optional<double>& units_per_metre) {
-  constexpr float kLargestDisparity = 2047;  // marks pixels without any
+  constexpr float kLargestDisparity = 2047;  // marks pixels that have no disparity
   if (has_many_values(values) && !have_low_bytes(values)) {
     return {{true,
              "all values are multiples of 256, like those of 8 bits; if their bytes stand in the "
@@ -289,14 +292,14 @@ Remarks coding_suspicions(std::span<const float> values, std::size_t width,
   return {};
 }
 
-// A value at the end of an image's range, with the next one to it.
+// The least or the greatest value of an image, and the one next to it.
 struct EndOfRange {
   float value = 0, next = 0;  // `next` is 0 if there is no other value
   std::size_t count = 0;      // pixels with the value
 };
 
-// Returns the value at one end of the range: of those up to `farthest`, the one that no other is
-// beyond, by `is_beyond`.
+// Returns the least value, if is_beyond(a, b) is a < b, or the greatest up to `farthest`, if it is
+// a > b.
 template <class IsBeyond>
 EndOfRange end_of(std::span<const float> values, double farthest, const IsBeyond& is_beyond) {
   EndOfRange end;
@@ -320,7 +323,7 @@ EndOfRange end_of(std::span<const float> values, double farthest, const IsBeyond
 Remarks marker_suspicions(std::span<const float> values, double farthest, double units_per_metre) {
   constexpr float kFar = 2, kNear = 10;  // times the next one
   constexpr double kNearest = 0.1;       // m
-  constexpr std::size_t kShare = 100;    // one pixel of so many
+  constexpr std::size_t kShare = 100;    // at least one pixel in a hundred
   const auto warning = [](const EndOfRange& end, const char* side) {
     const std::string marker = number_text(end.value);
     return Remarks{{true, pixels_text(end.count) + (end.count == 1 ? " holds " : " hold ") +
@@ -355,8 +358,8 @@ bool decodes(const DepthDecoding& decoding) {
   return decoding.swapped || decoding.rotated || decoding.disparity;
 }
 
-// Puts the bytes of values into their order, where that is not told. Returns false if it is
-// doubted.
+// Exchanges the bytes of values where they surely stand in the wrong order and the user tells none.
+// Returns false, with a warning, where the order is doubtful.
 bool find_byte_order(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
                      Remarks& remarks) {
   if (reading.decoding.swapped || reading.decoding.big_endian) return true;
@@ -383,7 +386,8 @@ bool find_byte_order(std::vector<float>& values, const RawDepth& raw, const Dept
   return true;
 }
 
-// Replaces the values by what they code. Returns true if they look coded still.
+// Replaces the values by what they code, as the user tells. Returns true, with a warning, if they
+// look coded in a way that the user does not tell.
 bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
             const std::string& name, Remarks& remarks) {
   if (!raw.are_16_bit) {
@@ -407,7 +411,7 @@ bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading&
   return !suspicions.empty();
 }
 
-// Sets markers to 0, and says which of the usual ones it met.
+// Sets values that mean "not measured" to 0. Notes the usual ones that it met.
 void remove_markers(std::vector<float>& values, const DepthReading& reading, Remarks& remarks) {
   std::vector<float> markers;
   for (const double value : reading.invalid) markers.push_back(static_cast<float>(value));

@@ -56,7 +56,7 @@ bool says_depth(const Words& words, const std::vector<Words>& all) {
   return is_red || (has(words.layer, "depth") && is_one_of(words.last, {"v", "y"}) && !is_vector);
 }
 
-// Returns the channel, or R, G and B of its layer if it is their R.
+// Returns the channel alone, or R, G and B of its layer if it is the R of these.
 Indices with_siblings(std::size_t channel, const std::vector<Words>& all) {
   if (all[channel].last != "r") return {channel};
   const auto green = sibling(all, all[channel].layer, "g"),
@@ -64,7 +64,7 @@ Indices with_siblings(std::size_t channel, const std::vector<Words>& all) {
   return green && blue ? Indices{channel, *green, *blue} : Indices{channel};
 }
 
-// Returns R, G and B, if there is nothing else but A.
+// Returns R, G and B, if the file has no channels but these and A.
 Indices grey_picture(const std::vector<Words>& all) {
   const auto red =
       std::find_if(all.begin(), all.end(), [](const Words& words) { return words.last == "r"; });

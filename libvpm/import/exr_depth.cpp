@@ -40,7 +40,7 @@ struct Window {
   std::uint64_t height() const { return extent(top, bottom); }
 };
 
-// Holds what decides how much memory a part takes.
+// Holds what a part's header tells of the memory that reading it takes.
 struct Part {
   Window data, display;
   std::uint8_t compression = 0;

@@ -111,7 +111,7 @@ void compare_with_plane(const Cloud& cloud, std::span<const std::size_t> points,
 // Returns how far normals lie off the planes that the points in a cube form: the median, in
 // degrees; empty if too few points form planes.
 std::optional<double> degrees_off_planes(const Cloud& cloud, const Cubes& cubes) {
-  constexpr std::size_t kFewest = 20, kPart = 10;  // one of so many must be judged
+  constexpr std::size_t kFewest = 20, kPart = 10;  // 20 points, and one in ten, must be judged
   std::vector<float> cosines;
   cubes.for_each(
       [&](std::span<const std::size_t> points) { compare_with_plane(cloud, points, cosines); });
@@ -146,10 +146,10 @@ struct Facing {
   std::size_t towards = 0, away = 0;
 };
 
-// Returns how the normals face that are seen from `place`, which are those of the nearest point in
-// each direction: the far side of a solid faces away.
+// Returns how normals face `place`. Judges the nearest point in each direction only, since the far
+// side of a solid rightly faces away.
 Facing facing(const PointSet& points, const Vec3& place) {
-  constexpr double kDirections = 64;  // per unit of a direction's coordinates
+  constexpr double kDirections = 64;  // squares of directions per unit of slope
   struct Seen {
     double distance;
     std::size_t point;
@@ -190,8 +190,8 @@ double median_radius(const Cloud& cloud) {
 }
 
 Remarks improbable_normals(const Cloud& cloud) {
-  constexpr double kSideOfRadius = 3;           // about as many spacings of points
-  constexpr std::size_t kFew = 8, kPart = 500;  // points; one of so many
+  constexpr double kSideOfRadius = 3;           // a cube is about three spacings of points wide
+  constexpr std::size_t kFew = 8, kPart = 500;  // 8 points, or one in 500, are no mistake
   const double side = kSideOfRadius * median_radius(cloud);
   if (!(side > 0)) return {};
   const Cubes cubes(cloud, side);

@@ -58,7 +58,7 @@ struct Header {
   std::uint64_t width = 0, height = 1, points = 0;
   std::uint64_t point_size = 0, point_values = 0;
   std::optional<Pose> viewpoint;
-  Vec3 origin;  // place that the points are written about
+  Vec3 origin;  // is added to each point (cloud_export.h says why)
   std::string encoding;
 };
 

@@ -167,8 +167,8 @@ class TiffReader {
     }
   }
 
-  // Returns libtiff's size of a buffer if it holds `values` values, and there is memory for it
-  // beside the image.
+  // Returns the size, in bytes, that libtiff asks of a buffer. Throws if it does not hold `values`
+  // values, or if there is no memory for it beside the image.
   std::size_t buffer_size(tmsize_t size, std::uint64_t values) const {
     const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(size, 0));
     const std::uint64_t of_image = sizeof(float) * image_.values.size();

@@ -7,7 +7,7 @@
 namespace vpm {
 namespace {
 
-constexpr int kDeepest = 16;  // levels; calibrations have three
+constexpr int kDeepest = 16;  // levels of nesting; calibrations have three
 
 nlohmann::json json_of(const YAML::Node& node, int depth) {
   if (depth > kDeepest) refuse("it is nested too deeply");
