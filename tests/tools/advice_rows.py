@@ -383,7 +383,7 @@ COMMANDS = [
     (TOOL, "(--pose) or (--poses) is missing: give one of them", f"{TOOL} {{1}} poses.txt", WALL),
     (f"{TOOL} --stiffness 2e4 --coupling stiffness=500,damping=5", "(--poses) is missing: give the path of the haptic device",
      f"{TOOL} --stiffness 2e4 --coupling stiffness=500,damping=5 {{0}} device.txt"),
-    (f"{STEPS} --frames steps", "(--trajectory) is missing: give the path of the tool", f"{STEPS} --frames steps {{0}} still.txt"),
+    (f"{STEPS} --frames steps", "(--poses) is missing: give the path of the haptic device", f"{STEPS} --frames steps {{0}} still.txt"),
     *[(f"{TOOL} {first} {second}", f"{first.split()[0]} and {second.split()[0]} exclude each other: leave one of them out",
        f"{TOOL} {left} {more}")
       for first, second, more in [
@@ -421,7 +421,7 @@ COMMANDS = [
     (f"{TOOL} --poses poses.txt --no-points", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     (f"{TOOL} --poses poses.txt --standby-us 9", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     ("vpm-query --tool - --cloud - --poses poses.txt",
-     "only one of --tool, --cloud, --poses and --trajectory can be standard input",
+     "only one of --tool, --cloud and --poses can be standard input",
      "vpm-query --tool small.vpmg --cloud - --poses poses.txt < wall.vpmc", WALL),
     # Couplings
     (COUPLED.replace(" --stiffness 2e4", "") + " --coupling stiffness=500,damping=5",

@@ -20,8 +20,9 @@ COLUMNS = {
     "poses in a cloud": IN_CLOUD,
     "`--batch`": IN_CLOUD | {"--batch": "2"},
     "`--coupling` in a cloud": IN_CLOUD | {"--coupling": "stiffness=500,damping=5", "--stiffness": "2"},
-    "`--frames`": {"--tool": "t.vpmg", "--frames": "f", "--trajectory": "p.txt"},
-    "several `--tool`": IN_CLOUD | {"--tool": ["t.vpmg", "u.vpmg"]},
+    "`--frames`": {"--tool": "t.vpmg", "--frames": "f", "--poses": "p.txt"},
+    "several `--tool` in a cloud": IN_CLOUD | {"--tool": ["t.vpmg", "u.vpmg"]},
+    "several `--tool` with `--frames`": {"--tool": ["t.vpmg", "u.vpmg"], "--frames": "f", "--poses": "p.txt"},
     "`--serve`": {"--tool": "t.vpmg", "--serve": None},
 }
 POSE = "0,0,1,0,0,0,1"

@@ -50,12 +50,12 @@ std::string in_capitals(std::string name) {
   return name;
 }
 
-// Returns the names of an option, and what it takes.
+// Returns the names of an option, and what it takes. Long names after the first are old ones.
 std::string names_of(const CLI::Option& option) {
   if (option.get_positional()) return in_capitals(option.get_name(true));
   std::string names;
   for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
-  for (const std::string& name : option.get_lnames()) names += "--" + name + ", ";
+  if (!option.get_lnames().empty()) names += "--" + option.get_lnames().front() + ", ";
   names.resize(names.size() - 2);
   const std::string value = what_it_takes(option);
   return value.empty() ? names : names + " " + value;

@@ -73,12 +73,17 @@ void declare_inputs(CLI::App& app, Arguments& a) {
       ->join(',')
       ->type_name("FLOAT")
       ->option_text("POSE");
-  app.add_option("--poses", a.poses, "File of poses: JSON Lines, TUM text or 4x4 text");
+  // --trajectory is its name of earlier versions.
+  app.add_option("--poses,--trajectory", a.poses,
+                 "File of poses: JSON Lines, TUM text or 4x4 text; with --frames, the path of the "
+                 "tool. Given several times there, a path for each --tool")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
   app.add_option(
          "--frames", a.replay.frames,
          "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
          "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
-         "lines; goes with --trajectory")
+         "lines; goes with --poses")
       ->option_text("FOLDER");
 }
 
@@ -136,17 +141,14 @@ void declare_motion(CLI::App& app, Arguments& a) {
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
   app.add_option("--coupling", a.coupling,
-                 "Take --poses or --trajectory for those of a haptic device that holds the tool by "
-                 "a spring and "
+                 "Take --poses for those of a haptic device that holds the tool by a spring and "
                  "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness")
       ->option_text("VALUES");
 }
 
 void declare_frames(CLI::App& app, ReplayArguments& a) {
   begin_group(app, "Recorded frames", Group::rare);
-  app.add_option("--trajectory", a.trajectory,
-                 "Path of the tool through the frames, as for --poses");
-  app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
+  app.add_option("--rate", a.rate, "Steps per second along --poses with --frames (1000)")
       ->check(number_in(1, 1e6))
       ->option_text("R");
   app.add_option("--camera-poses", a.camera_poses,
@@ -177,6 +179,9 @@ void declare_outputs(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_flag("--bodies", a.bodies,
                "Each line also lists what each body of the scene gives: cloud first, then solids");
+  app.add_flag("--resume", a.resume,
+               "Go on after the lines that an interrupted run with the same options left beside "
+               "--output");
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state: .csv, .ply (balls), .points.ply or .glb");
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
@@ -207,17 +212,19 @@ void declare(CLI::App& app, Arguments& a) {
   declare_gone_options(app);
 }
 
+Leftover leftover_of(const Arguments& a, const CommonOptions& common) {
+  if (a.resume) return Leftover::resume;
+  return common.force ? Leftover::discard : Leftover::refuse;
+}
+
 void check_names(const Arguments& a, const CommonOptions& common) {
   std::vector<std::string> solids;
   for (const std::string& text : a.solids) solids.push_back(solid_from_text(text).name);
   if (std::ranges::count(solids, "-") > 0)
     throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
-  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.poses == "-") +
-          (a.replay.trajectory == "-") >
-      1) {
+  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + std::ranges::count(a.poses, "-") > 1)
     throw Error(ErrorKind::invalid_argument,
-                "only one of --tool, --cloud, --poses and --trajectory can be standard input");
-  }
+                "only one of --tool, --cloud and --poses can be standard input");
   if (a.serve && (std::ranges::count(a.tools, "-") > 0 || a.cloud == "-"))
     throw Error(
         ErrorKind::invalid_argument,
@@ -225,11 +232,12 @@ void check_names(const Arguments& a, const CommonOptions& common) {
   if (a.serve && a.output.ends_with(".csv"))
     throw Error(ErrorKind::invalid_argument,
                 "--serve answers in JSON: let the name of --output end in .jsonl");
+  KeptLines::check(a.output, leftover_of(a, common));
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  std::vector<std::string> inputs{a.cloud, a.poses, a.replay.frames, a.replay.trajectory,
-                                  a.replay.camera_poses};
+  std::vector<std::string> inputs{a.cloud, a.replay.frames, a.replay.camera_poses};
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   inputs.insert(inputs.end(), solids.begin(), solids.end());
+  inputs.insert(inputs.end(), a.poses.begin(), a.poses.end());
   check_files(inputs,
               {{"--output", a.output, std::nullopt, OutputForm::results},
                {"--spheres-out", a.spheres_out, std::nullopt},

@@ -8,12 +8,13 @@
 
 #include "tools/common/import_arguments.h"
 #include "tools/common/program.h"
+#include "tools/query/kept_lines.h"
 
 namespace vpm::tools {
 
 // Values of the options of recorded frames.
 struct ReplayArguments {
-  std::string frames, trajectory, camera_poses;
+  std::string frames, camera_poses;
   std::optional<double> rate;  // steps per second; kRate if not given
   double frame_rate = 30;      // frames per second, for frames that have numbers but no times
   double frame_latency = 0;    // s
@@ -27,7 +28,8 @@ struct ReplayArguments {
 struct Arguments {
   std::vector<std::string> tools;
   std::vector<std::string> solids;  // each FILE or FILE@POSE
-  std::string cloud, pose, poses;
+  std::string cloud, pose;
+  std::vector<std::string> poses;  // one file, or one for each tool
   std::string measure = "refined", shadows = "near";
   std::uint32_t level = 0;
   std::string max_error;
@@ -35,13 +37,16 @@ struct Arguments {
   bool for_scene = false, coherent = false, raw_points = false, bodies = false;
   std::string coupling;
   std::size_t batch = 1;
-  bool serve = false;
+  bool serve = false, resume = false;
   ReplayArguments replay;
   std::string output = "-", spheres_out, stats, view;
 };
 
 // Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, Arguments& arguments);
+
+// Returns what becomes of the lines that an interrupted run left.
+Leftover leftover_of(const Arguments& arguments, const CommonOptions& common);
 
 // Throws Error(invalid_argument) if two inputs are standard input, or an output's name is refused.
 void check_names(const Arguments& arguments, const CommonOptions& common);

@@ -75,7 +75,7 @@ void check_solids(const PoseReader& reader, std::size_t solids) {
 std::optional<AskedPose> PoseSource::next_one() {
   if (pending_) return std::exchange(pending_, std::nullopt);
   if (!arguments_.pose.empty()) return std::nullopt;
-  if (!reader_) reader_.emplace(arguments_.poses);
+  if (!reader_) reader_.emplace(arguments_.poses.front());
   const std::optional<Pose> pose = reader_->next();
   if (!pose) return std::nullopt;
   check_solids(*reader_, arguments_.solids.size());
@@ -90,6 +90,11 @@ std::vector<AskedPose> PoseSource::next(std::size_t most) {
     poses.push_back(*pose);
   }
   return poses;
+}
+
+void PoseSource::pass_over(std::size_t poses) {
+  for (std::size_t k = 0; k < poses; ++k)
+    if (!next_one()) refuse("there are fewer poses than lines of the run before");
 }
 
 double PoseSource::largest_deviation() const {

@@ -60,6 +60,8 @@ class PoseSource {
   AskedPose first();
   // Returns the next poses, `most` of them or as many as are left. Throws what PoseReader throws.
   std::vector<AskedPose> next(std::size_t most);
+  // Passes over poses, whose lines another run wrote. Throws Error(refused) if there are fewer.
+  void pass_over(std::size_t poses);
   // Returns the largest deviation of a rotation before it was normalised.
   double largest_deviation() const;
 

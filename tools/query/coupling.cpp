@@ -156,12 +156,12 @@ void run_coupling(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   const Tool& tool = setup.tools.front();
   CloudScene scene(setup);
-  PoseReader reader(a.poses);
-  ResultOutput output(a.output, coupling_columns());
+  PoseReader reader(a.poses.front());
+  ResultOutput output(setup.program, a, coupling_columns());
   const CouplingParameters parameters =
       coupling_from_text(a.coupling, tool, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);
-  note_lines(setup.program, a.poses, path.path().undefined(), path.path().doubled());
+  note_lines(setup.program, a.poses.front(), path.path().undefined(), path.path().doubled());
   const Pose first = path.pose(0);
   LevelQuery query(tool, setup.options, setup.level, scene.scene(), first);
   note_scale(setup.program, query);
@@ -174,7 +174,7 @@ void run_coupling(QuerySetup& setup) {
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);
   if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
-  add_level(stats, query);
+  add_levels(stats, query);
   write_last_spheres(setup, query, run.last);
   write_stats_and_view(setup, std::move(stats));
 }

@@ -18,6 +18,7 @@ void run(Program& program, const Arguments& arguments) {
     case Mode::coupling:
       return run_coupling(setup);
     case Mode::frames:
+    case Mode::tools_in_frames:
       return run_frames(setup);
     case Mode::several_tools:
       return run_several_tools(setup);
@@ -37,7 +38,7 @@ int main(int argc, char** argv) {
   program.show_examples({
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",
       "vpm-query --tool tool.off --cloud scene.vpmc --poses poses.jsonl -o results.csv",
-      "vpm-query --tool tool.vpmg --frames clouds --trajectory path.txt -o steps.jsonl",
+      "vpm-query --tool tool.vpmg --frames clouds --poses path.txt -o steps.jsonl",
   });
   program.computes_on_devices();
   return program.run(argc, argv, [&] { run(program, arguments); });

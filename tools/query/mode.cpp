@@ -23,37 +23,39 @@ struct Row {
 
 // Options that are not in this table go with all modes.
 constexpr Row kTable[] = {
-    // poses, batches, coupling, frames, several tools, server
+    // poses, batches, coupling, frames, several tools, several tools in frames,
+    // server
     {"--tool",
-     {required, required, required, required, required, required},
+     {required, required, required, required, required, required, required},
      "give the .vpmg that vpm-graph wrote"},
     {"--cloud",
-     {scene, scene, scene, no, scene, yes},
+     {scene, scene, scene, no, scene, no, yes},
      "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
-    {"--solid", {scene, scene, scene, yes, scene, yes}},
-    {"--bodies", {yes, no, no, no, no, no}},
-    {"--pose", {either, either, no, no, either, no}},
-    {"--poses", {either, either, required, no, either, no}, "give the path of the haptic device"},
-    {"--batch", {yes, yes, no, no, yes, no}},
-    {"--coupling", {yes, no, yes, yes, no, no}},
-    {"--deadline-us", {yes, no, yes, yes, no, yes}},
-    {"--coherent", {yes, no, yes, yes, no, yes}},
-    {"--spheres-out", {yes, yes, yes, yes, no, no}},
-    {"--frames", {no, no, no, yes, no, no}},
-    {"--trajectory",
-     {no, no, no, required, no, no},
-     "give the path of the tool through the frames"},
-    {"--rate", {no, no, no, yes, no, no}},
-    {"--camera-poses", {no, no, no, yes, no, no}},
-    {"--frame-rate", {no, no, no, yes, no, no}},
-    {"--frame-latency", {no, no, no, yes, no, no}},
-    {"--align-starts", {no, no, no, yes, no, no}},
-    {"--repeat-frames", {no, no, no, yes, no, no}},
-    {"--realtime", {no, no, no, yes, no, no}},
-    {"--intrinsics", {no, no, no, yes, no, yes}},
-    {"--camera-pose", {no, no, no, yes, no, yes}},
-    {"--view", {yes, yes, yes, yes, yes, no}},
-    {"--serve", {no, no, no, no, no, yes}},
+    {"--solid", {scene, scene, scene, yes, scene, yes, yes}},
+    {"--bodies", {yes, no, no, no, no, no, no}},
+    {"--pose", {either, either, no, no, either, no, no}},
+    {"--poses",
+     {either, either, required, required, either, required, no},
+     "give the path of the haptic device, or with --frames the path of the "
+     "tool"},
+    {"--batch", {yes, yes, no, no, yes, no, no}},
+    {"--coupling", {yes, no, yes, yes, no, no, no}},
+    {"--deadline-us", {yes, no, yes, yes, no, no, yes}},
+    {"--coherent", {yes, no, yes, yes, no, no, yes}},
+    {"--spheres-out", {yes, yes, yes, yes, no, no, no}},
+    {"--frames", {no, no, no, yes, no, yes, no}},
+    {"--rate", {no, no, no, yes, no, yes, no}},
+    {"--camera-poses", {no, no, no, yes, no, yes, no}},
+    {"--frame-rate", {no, no, no, yes, no, yes, no}},
+    {"--frame-latency", {no, no, no, yes, no, yes, no}},
+    {"--align-starts", {no, no, no, yes, no, yes, no}},
+    {"--repeat-frames", {no, no, no, yes, no, yes, no}},
+    {"--realtime", {no, no, no, yes, no, yes, no}},
+    {"--intrinsics", {no, no, no, yes, no, yes, yes}},
+    {"--camera-pose", {no, no, no, yes, no, yes, yes}},
+    {"--view", {yes, yes, yes, yes, yes, yes, no}},
+    {"--resume", {yes, yes, yes, yes, yes, yes, no}},
+    {"--serve", {no, no, no, no, no, no, yes}},
 };
 
 struct Pair {
@@ -62,10 +64,17 @@ struct Pair {
 };
 
 constexpr Pair kExclusive[] = {
-    {"--pose", "--poses"},        {"--level", "--max-error"},
-    {"--level", "--for-scene"},   {"--max-error", "--for-scene"},
-    {"--level", "--deadline-us"}, {"--coherent", "--deadline-us"},
-    {"--solid", "--view"},        {"--camera-pose", "--camera-poses"},
+    {"--pose", "--poses"},
+    {"--level", "--max-error"},
+    {"--level", "--for-scene"},
+    {"--max-error", "--for-scene"},
+    {"--level", "--deadline-us"},
+    {"--coherent", "--deadline-us"},
+    {"--camera-pose", "--camera-poses"},
+    {"--solid", "--view"},
+    {"--resume", "--deadline-us"},
+    {"--resume", "--spheres-out"},
+    {"--resume", "--view"},
 };
 
 struct Need {
@@ -76,6 +85,7 @@ struct Need {
 
 constexpr Need kNeeds[] = {
     {"--coupling", "--stiffness", "give the scene's stiffness in N/m^3"},
+    {"--resume", "--output", "name the file of the run that was interrupted"},
 };
 
 struct Words {
@@ -89,6 +99,7 @@ constexpr Words kWords[kModes] = {
     {"a haptic device's path in a cloud", "chosen by --coupling without --frames"},
     {"recorded frames", "chosen by --frames"},
     {"several tools in a cloud", "chosen by more than one --tool"},
+    {"several tools in recorded frames", "chosen by --frames and more than one --tool"},
     {"requests", "chosen by --serve"},
 };
 
@@ -146,12 +157,28 @@ void refuse_missing_options(const CLI::App& app, Mode mode) {
     refuse_usage(list_of(alternatives, "or") + " is missing: give one of them");
 }
 
+// Throws Error(invalid_argument) unless there is one file of poses, or in
+// frames one for each tool.
+void check_paths(const CLI::App& app, Mode mode) {
+  const std::size_t paths = app.get_option("--poses")->count();
+  const std::size_t tools = app.get_option("--tool")->count();
+  if (paths <= 1 || (mode == Mode::tools_in_frames && paths == tools)) return;
+  if (mode == Mode::tools_in_frames)
+    refuse_usage("--poses is given " + std::to_string(paths) + " times and --tool " +
+                 std::to_string(tools) + " times: give one path for all tools, or one for each");
+  refuse_usage(
+      "--poses has several values; leave all but one out: only "
+      "several --tool with --frames have a "
+      "path each");
+}
+
 }  // namespace
 
 Mode mode_of(const Arguments& a) {
   if (a.serve) return Mode::server;
-  if (a.tools.size() > 1) return Mode::several_tools;
-  if (!a.replay.frames.empty()) return Mode::frames;
+  const bool are_several = a.tools.size() > 1;
+  if (!a.replay.frames.empty()) return are_several ? Mode::tools_in_frames : Mode::frames;
+  if (are_several) return Mode::several_tools;
   if (!a.coupling.empty()) return Mode::coupling;
   if (a.batch > 1) return Mode::batches;
   return Mode::poses;
@@ -166,6 +193,7 @@ void check_options(const CLI::App& app, Mode mode) {
   if (mode == Mode::server && app.get_option("--tool")->count() > 1)
     refuse_usage("--serve answers for one tool: give one --tool");
   refuse_missing_options(app, mode);
+  check_paths(app, mode);
   for (const auto& [option, needed, advice] : kNeeds)
     if (is_given(app, option) && !is_given(app, needed))
       refuse_usage(std::string(option) + " needs " + needed + ": " + advice);

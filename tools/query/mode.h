@@ -10,14 +10,15 @@ namespace vpm::tools {
 
 // The table in mode.cpp has a column for each.
 enum class Mode {
-  poses,          // poses of one tool in a cloud, answered one by one
-  batches,        // such poses, many answered at once
-  coupling,       // path of a haptic device in a cloud
-  frames,         // path through recorded frames, with or without a haptic device
-  several_tools,  // poses of several tools in a cloud, one by one or many at once
-  server          // requests on standard input, answered line by line
+  poses,            // poses of one tool in a cloud, answered one by one
+  batches,          // such poses, many answered at once
+  coupling,         // path of a haptic device in a cloud
+  frames,           // path through recorded frames, with or without a haptic device
+  several_tools,    // poses of several tools in a cloud, one by one or many at once
+  tools_in_frames,  // several tools through recorded frames, on one path or on one for each
+  server            // requests on standard input, answered line by line
 };
-constexpr std::size_t kModes = 6;
+constexpr std::size_t kModes = 7;
 
 // Returns the mode that the options choose.
 Mode mode_of(const Arguments& arguments);

@@ -23,6 +23,7 @@ class PoseQueries {
       : setup_(setup),
         scene_(scene),
         output_(output),
+        asked_(setup.options.coherent ? 0 : output.pass_over(1)),
         query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
   void ask(const AskedPose& asked) {
@@ -43,6 +44,8 @@ class PoseQueries {
   // Queries the last pose again, since a batch leaves no states of spheres.
   void ask_last_again() { query_.run(scene_.scene(), last_.pose, 0, last_.solids); }
 
+  // Returns the number of poses that were asked, those of an interrupted run too.
+  std::size_t asked() const { return asked_; }
   const LevelQuery& query() const { return query_; }
   // Returns the time of each answer, s.
   const std::vector<double>& seconds() const { return seconds_; }
@@ -51,7 +54,7 @@ class PoseQueries {
  private:
   void write(const AskedPose& asked, const Result& result) {
     scene_.see(asked.pose, 0, result);
-    nlohmann::ordered_json line = result_line(seconds_.size(), asked.id, result, query_.level(),
+    nlohmann::ordered_json line = result_line(asked_++, asked.id, result, query_.level(),
                                               setup_.options.measure, query_.reason(), {});
     if (setup_.arguments.bodies) line["bodies"] = bodies_of(query_.parts());
     output_.append(line);
@@ -61,6 +64,7 @@ class PoseQueries {
   QuerySetup& setup_;
   CloudScene& scene_;
   ResultOutput& output_;
+  std::size_t asked_;
   LevelQuery query_;
   std::vector<double> seconds_;
   AskedPose last_;
@@ -72,9 +76,10 @@ void run_poses(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   PoseSource source(a);
   CloudScene scene(setup);
-  ResultOutput output(a.output, result_columns());
+  ResultOutput output(setup.program, a, result_columns());
   PoseQueries queries(setup, scene, source.first().pose, output);
   note_scale(setup.program, queries.query());
+  source.pass_over(queries.asked());
   const bool together = a.batch > 1;
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     together ? queries.ask_together(poses) : queries.ask(poses.front());
@@ -84,7 +89,7 @@ void run_poses(QuerySetup& setup) {
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
   if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
-  add_level(stats, queries.query());
+  add_levels(stats, queries.query());
   write_last_spheres(setup, queries.query(), queries.last());
   write_stats_and_view(setup, std::move(stats));
 }

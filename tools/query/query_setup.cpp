@@ -106,7 +106,11 @@ void write_last_spheres(const QuerySetup& setup, const LevelQuery& query, const 
   write_spheres(path, spheres, query.states(), last);
 }
 
-void add_level(nlohmann::json& stats, const LevelQuery& query) {
+void add_levels(nlohmann::json& stats, const LevelQuery& query, std::size_t tools) {
+  if (tools > 1) {
+    for (std::size_t tool = 0; tool < tools; ++tool) stats["levels"].push_back(query.level(tool));
+    return;
+  }
   stats["level"] = query.level();
   if (query.scale()) stats["scene"] = scene_report(*query.scale());
 }

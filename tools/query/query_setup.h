@@ -41,8 +41,9 @@ void note_scale(const Program& program, const LevelQuery& query, std::size_t too
 // Writes --spheres-out for the pose that the query answered last.
 void write_last_spheres(const QuerySetup& setup, const LevelQuery& query, const Pose& last);
 
-// Adds the level of a single tool and the scene's scale to the statistics.
-void add_level(nlohmann::json& stats, const LevelQuery& query);
+// Adds the level of a single tool and the scene's scale, or the level of each tool, to the
+// statistics.
+void add_levels(nlohmann::json& stats, const LevelQuery& query, std::size_t tools = 1);
 
 // Adds device, threads and options to the statistics of a run. Writes them to --stats and the page
 // to --view, if these are given.

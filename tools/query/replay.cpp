@@ -18,7 +18,6 @@
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/frame_schedule.h"
 #include "libvpm/recording/loop_clock.h"
-#include "libvpm/recording/timed_path.h"
 #include "libvpm/setup/pose_check.h"
 #include "libvpm/setup/size_check.h"
 #include "tools/common/recorded_frames.h"
@@ -29,6 +28,7 @@
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
 #include "tools/query/result_output.h"
+#include "tools/query/tool_paths.h"
 
 namespace vpm::tools {
 namespace {
@@ -40,7 +40,7 @@ Scene scene_with(const AnyBody& frame, const std::vector<Body>& solids) {
   return Scene(std::move(bodies));
 }
 
-// Path of the tool through a recording.
+// Paths of tools through a recording.
 class Replay {
  public:
   // Reads the recording and the path, which has `rate` steps per second. Prepares depth images on
@@ -49,14 +49,15 @@ class Replay {
   // share no time or no frame can be used.
   Replay(const QuerySetup& setup, double rate);
 
-  const SampledPath& path() const { return path_; }
+  const ToolPaths& paths() const { return paths_; }
   // Returns the scene of the first frame that can be used, by which levels are chosen.
   Scene first() const { return scene_with(*first_body_, solids_); }
 
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
-  // and warnings about frames as they happen.
+  // and warnings about frames as they happen. The first `passed` steps are not asked.
   void run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-           Measure measure, ResultOutput& output, std::optional<PoseView>& view);
+           Measure measure, std::size_t passed, ResultOutput& output,
+           std::optional<PoseView>& view);
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -81,15 +82,24 @@ class Replay {
   void say(const PreparedChange& change);
   void compare_size(const PreparedChange& change);
   void say_at_end() const;
+  // Asks step k of all tools.
+  void ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling);
+  // Shows the step that was asked last to the checks and the view, and writes
+  // its lines.
+  void tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
+            ResultOutput& output, std::optional<PoseView>& view) const;
   std::string frame_name() const;
-  // Returns step k, without rendered wrench and energy if there is no coupling.
-  CoupledStep ask(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling) const;
+  // Returns step k of a tool, without rendered wrench and energy if there is no
+  // coupling.
+  CoupledStep ask(std::size_t k, std::size_t tool, LevelQuery& query,
+                  std::optional<VirtualCoupling>& coupling) const;
 
   const Program& program_;
   const ReplayArguments& arguments_;
   double rate_;
   Recording recording_;
-  SampledPath path_;
+  std::size_t tools_;
+  ToolPaths paths_;
   ImportOptions import_;
   Device device_;
   Denoising points_;
@@ -99,6 +109,7 @@ class Replay {
   std::optional<Scene> scene_;  // the frame that the loop sees
   std::unique_ptr<FrameFeed> feed_;
   std::optional<LoopClock> clock_;
+  std::vector<CoupledStep> now_;  // the step of each tool
   Pose last_pose_;
   std::vector<double> query_seconds_;
   std::optional<Camera> first_camera_;  // camera of the first frame, if it is an image
@@ -114,15 +125,6 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-SampledPath read_path(const Program& program, const std::string& name, double rate) {
-  PoseReader reader(name);
-  SampledPath path(TimedPath(reader), rate);
-  note_deviation(program, name, reader.largest_deviation());
-  note_lines(program, name, path.path().undefined(), path.path().doubled());
-  warn_of_gap(program, name, path.path().improbable_gap());
-  return path;
-}
-
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
@@ -131,34 +133,34 @@ Replay::Replay(const QuerySetup& setup, double rate)
     : program_(setup.program),
       arguments_(setup.arguments.replay),
       rate_(rate),
-      path_(read_path(program_, arguments_.trajectory, rate)),
+      tools_(setup.arguments.tools.size()),
+      paths_(program_, setup.arguments.poses, rate),
       import_(import_options(program_, arguments_.import)),
       device_(setup.options.device),
       points_(setup.points),
       solids_(setup.solids) {
-  const std::string& frames = arguments_.frames;
-  recording_ = open_recording(program_, frames, recording_options(arguments_, import_), import_);
-  note_recording(program_, frames, recording_, import_);
-  if (!recording_.has_clock && path_.path().has_times())
+  recording_ =
+      open_recording(program_, arguments_.frames, recording_options(arguments_, import_), import_);
+  note_recording(program_, arguments_.frames, recording_, import_);
+  if (!recording_.has_clock && paths_.has_times())
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
-  schedule_ = {rate, path_.steps(), start_time(), arguments_.frame_latency,
+  schedule_ = {rate, paths_.steps(), start_time(), arguments_.frame_latency,
                arguments_.repeat_frames};
   find_first_body();
 }
 
 double Replay::start_time() const {
-  const TimedPath& path = path_.path();
   const double first = recording_.frames.front().time, last = recording_.frames.back().time;
-  if (arguments_.align_starts || !recording_.has_clock || !path.has_times()) return first;
-  if (path.end() < first || path.start() > last) {
+  if (arguments_.align_starts || !recording_.has_clock || !paths_.has_times()) return first;
+  if (paths_.end() < first || paths_.start() > last) {
     char text[200];
     std::snprintf(text, sizeof text,
                   "the path (%.3f to %.3f s) and the frames (%.3f to %.3f s) share no time; "
                   "--align-starts lets both begin together",
-                  path.start(), path.end(), first, last);
+                  paths_.start(), paths_.end(), first, last);
     refuse(text);
   }
-  return path.start();
+  return paths_.start();
 }
 
 void Replay::find_first_body() {
@@ -182,11 +184,11 @@ void Replay::find_first_body() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
-CoupledStep Replay::ask(std::size_t k, LevelQuery& query,
+CoupledStep Replay::ask(std::size_t k, std::size_t tool, LevelQuery& query,
                         std::optional<VirtualCoupling>& coupling) const {
-  CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
+  CoupledStep step{k, paths_.time(k), paths_.pose(tool, k), {}, {}, {}, {}};
   step.tool = coupling ? coupling->tool() : step.device;
-  step.contact = query.run(*scene_, step.tool);
+  step.contact = query.run(*scene_, step.tool, tool);
   if (coupling) {
     step.rendered = coupling->advance(step.device, step.contact.wrench);
     step.energy = coupling->energy();
@@ -213,33 +215,52 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   }
 }
 
+void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling) {
+  now_.clear();
+  for (std::size_t tool = 0; tool < tools_; ++tool) {
+    now_.push_back(ask(k, tool, query, coupling));
+    query_seconds_.push_back(query.seconds());
+  }
+  last_pose_ = now_.back().tool;
+}
+
+void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
+                  ResultOutput& output, std::optional<PoseView>& view) const {
+  if (view) view->see_frame(feed_->frame());
+  for (std::size_t tool = 0; tool < now_.size(); ++tool) {
+    const CoupledStep& step = now_[tool];
+    if (view) view->add(tool, step.tool, step.contact, query);
+    if (feed_->frame() && solids_.empty())
+      check.see(step.tool, tool, step.contact, *feed_->frame());
+    const auto index = tools_ > 1 ? std::optional(tool) : std::nullopt;
+    output.append(are_coupled ? coupled_line(step, frame_name())
+                              : result_line(step.step, {}, step.contact, query.level(tool), measure,
+                                            query.reason(tool),
+                                            StepOfReplay{step.time, frame_name()}, index));
+  }
+}
+
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-                 Measure measure, ResultOutput& output, std::optional<PoseView>& view) {
+                 Measure measure, std::size_t passed, ResultOutput& output,
+                 std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
   scene_.emplace(scene_with(feed_->body(), solids_));
   clock_.emplace(rate_, arguments_.realtime);
-  for (std::size_t k = 0; k < path_.steps(); ++k) {
+  for (std::size_t k = 0; k < paths_.steps(); ++k) {
     // A loop that runs ahead of the clock waits for frames that a real stream would have brought in
     // time.
     const PreparedChange* change = arguments_.realtime ? nullptr : feed_->advance_to(k);
     clock_->begin_step();
     if (arguments_.realtime) change = feed_->advance_to(k);
     if (change) scene_.emplace(scene_with(feed_->body(), solids_));
-    const CoupledStep step = ask(k, query, coupling);
+    if (k >= passed) ask_all(k, query, coupling);
     clock_->end_step();
-    last_pose_ = step.tool;
-    query_seconds_.push_back(query.seconds());
-    if (view) view->see_frame(feed_->frame());
-    if (view) view->add(0, step.tool, step.contact, query);
-    if (feed_->frame() && solids_.empty()) check.see(step.tool, 0, step.contact, *feed_->frame());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     if (change && !sizes_differ_) compare_size(*change);
-    output.append(coupling ? coupled_line(step, frame_name())
-                           : result_line(k, {}, step.contact, query.level(), measure,
-                                         query.reason(), StepOfReplay{step.time, frame_name()}));
+    if (k >= passed) tell(query, check, measure, coupling.has_value(), output, view);
   }
   wall_seconds_ = clock_->seconds();
   say_at_end();
@@ -289,7 +310,7 @@ void Replay::say_at_end() const {
   std::snprintf(text, sizeof text,
                 "%zu steps in %.3g s, %.3g times real time; latency %.0f us median, %.0f us p99, "
                 "%.0f us longest; %zu frames used",
-                latency.size(), wall_seconds_, path_.time(path_.steps()) / wall_seconds_,
+                latency.size(), wall_seconds_, paths_.time(paths_.steps()) / wall_seconds_,
                 1e6 * latency.quantile(0.5), 1e6 * latency.quantile(0.99),
                 1e6 * latency.quantile(1), feed_->counts().used);
   program_.note(text);
@@ -327,21 +348,25 @@ void run_frames(QuerySetup& setup) {
   const double rate =
       parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
   Replay replay(setup, rate);
-  const Pose first = replay.path().pose(0);
-  LevelQuery query(tool, setup.options, setup.level, replay.first(), first);
-  note_scale(setup.program, query);
+  const Pose first = replay.paths().pose(0, 0);
+  LevelQuery query(setup.tools, setup.options, setup.level, replay.first(), first);
+  for (std::size_t k = 0; k < setup.tools.size(); ++k) note_scale(setup.program, query, k);
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
     note_coupling(setup.program, *parameters, tool, setup.options.stiffness);
     coupling.emplace(*parameters, tool.center_of_mass(), first);
   }
-  ResultOutput output(a.output, parameters ? coupling_columns() : result_columns());
-  const std::vector<const ToolModel*> tools{&HandleAccess::held(tool)};
+  ResultOutput output(setup.program, a, parameters ? coupling_columns() : result_columns());
+  std::vector<const ToolModel*> tools;
+  for (const Tool& one : setup.tools) tools.push_back(&HandleAccess::held(one));
   const std::optional<Remark> sizes = improbable_sizes(tools, replay.first_scene(), true);
   if (sizes) say(setup.program, {*sizes});
   PoseCheck check(tools, replay.source(),
                   [&](std::size_t frame) { return replay.scene_of(frame); });
-  replay.run(query, check, coupling, setup.options.measure, output, setup.view);
+  // Steps that depend on those before are asked again, and their lines passed over.
+  const std::size_t passed =
+      parameters || setup.options.coherent ? 0 : output.pass_over(tools.size());
+  replay.run(query, check, coupling, setup.options.measure, passed, output, setup.view);
   output.finish();
   const std::optional<Remark> missing = check.remark();
   if (missing && !sizes) say(setup.program, {*missing});
@@ -349,7 +374,7 @@ void run_frames(QuerySetup& setup) {
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_body().positions().size();
   stats["replay"] = replay.report(a.deadline_us ? 1e-6 * *a.deadline_us : 1 / rate);
-  add_level(stats, query);
+  add_levels(stats, query, tools.size());
   write_last_spheres(setup, query, replay.last_pose());
   write_stats_and_view(setup, std::move(stats));
 }

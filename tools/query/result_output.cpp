@@ -1,8 +1,15 @@
 #include "tools/query/result_output.h"
 
-#include <filesystem>
+#include <vpm/version.h>
 
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "libvpm/file/checksum.h"
 #include "libvpm/file/text.h"
+#include "tools/common/error_text.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -70,6 +77,36 @@ constexpr CsvColumn kCoupling[] = {
     {"lost", "/energy/lost"},
 };
 
+// Returns the hash of a file, or null if it has no name, is a folder, or cannot be read twice.
+nlohmann::json hash_of(const std::string& name) {
+  std::error_code fault;
+  if (name.empty() || !std::filesystem::is_regular_file(name, fault)) return nullptr;
+  return file::content_hash({file::read_all(name)});
+}
+
+// Returns all that lines of results depend on. Throws Error(invalid_argument) with --resume if an
+// input cannot be compared with that of the run before.
+nlohmann::json run_of(const Program& program, const Arguments& a) {
+  nlohmann::json run = program.parameters();
+  for (const char* name : {"resume", "batch", "realtime"}) run.erase(name);
+  run["version"] = VPM_VERSION;
+  run["frames"] = a.replay.frames;
+  run["frame-rate"] = a.replay.frame_rate;
+  const auto add = [&](const char* option, const std::string& name) {
+    const nlohmann::json hash = hash_of(name);
+    if (a.resume && !name.empty() && hash.is_null())
+      refuse_usage("--resume compares files with those of the run before: name one for --" +
+                   std::string(option) + " in place of " + name);
+    run[option].push_back(hash);
+  };
+  for (const std::string& tool : a.tools) add("tool", tool);
+  for (const std::string& solid : a.solids) add("solids", solid_from_text(solid).name);
+  add("cloud", a.cloud);
+  for (const std::string& poses : a.poses) add("poses", poses);
+  add("camera-poses", a.replay.camera_poses);
+  return run;
+}
+
 std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -94,25 +131,65 @@ std::span<const CsvColumn> coupling_columns() {
   return kCoupling;
 }
 
-ResultOutput::ResultOutput(const std::string& path, std::span<const CsvColumn> columns)
-    : output_(path) {
-  if (file::in_lower_case(std::filesystem::path(path).extension().string()) != ".csv") return;
+ResultOutput::ResultOutput(const Program& program, const Arguments& arguments,
+                           std::span<const CsvColumn> columns)
+    : program_(program), path_(arguments.output) {
+  if (KeptLines::are_kept(path_))
+    kept_.emplace(path_, run_of(program, arguments), leftover_of(arguments, program.common()));
+  else
+    straight_.emplace(path_);
+  there_ = kept_ ? kept_->lines() : 0;
+  if (file::in_lower_case(std::filesystem::path(path_).extension().string()) != ".csv") return;
   columns_ = columns;
-  std::string names;
+  if (there_ > 0) {  // the first line has the names
+    --there_;
+    return;
+  }
   for (const CsvColumn& column : columns)
-    names += (names.empty() ? "" : ",") + std::string(column.name);
-  output_.append(names + "\n");
+    names_ += (names_.empty() ? "" : ",") + std::string(column.name);
+}
+
+ResultOutput::~ResultOutput() {
+  const std::size_t lines = kept_ ? kept_->lines() : 0;
+  if (lines > 0 && !is_finished_)
+    program_.note(std::to_string(lines) + " lines are kept in " + path_ +
+                  ".part: --resume goes on after them");
+}
+
+std::size_t ResultOutput::pass_over(std::size_t lines) {
+  const std::size_t poses = there_ / lines;
+  there_ %= lines;
+  return poses;
 }
 
 void ResultOutput::append(const nlohmann::ordered_json& line) {
-  if (columns_.empty()) return output_.append(json_text(line) + "\n");
+  if (there_ > 0) {
+    --there_;
+    return;
+  }
+  if (columns_.empty()) return write(json_text(line));
+  write_names();
   std::string text;
   for (const CsvColumn& column : columns_) {
     const nlohmann::ordered_json::json_pointer place(column.pointer);
     if (&column != columns_.data()) text += ',';
     if (line.contains(place)) text += csv_field(line[place]);
   }
-  output_.append(text + "\n");
+  write(text);
+}
+
+void ResultOutput::finish() {
+  write_names();
+  kept_ ? kept_->finish() : straight_->finish();
+  is_finished_ = true;
+}
+
+void ResultOutput::write_names() {
+  if (!names_.empty()) write(std::exchange(names_, {}));
+}
+
+void ResultOutput::write(const std::string& line) {
+  kept_ ? kept_->append(line + "\n") : straight_->append(line + "\n");
 }
 
 }  // namespace vpm::tools

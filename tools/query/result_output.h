@@ -1,11 +1,14 @@
 // Lines of results in a file: JSON Lines, or CSV if its name ends in .csv.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "libvpm/file/stream.h"
+#include "tools/query/arguments.h"
 
 namespace vpm::tools {
 
@@ -22,16 +25,37 @@ std::span<const CsvColumn> coupling_columns();
 
 class ResultOutput {
  public:
-  // Opens the output, and writes the names of the columns to CSV. Throws as file::Output.
-  ResultOutput(const std::string& path, std::span<const CsvColumn> columns);
+  // Opens the output of --output, whose first line in CSV has the columns' names. Lines of a file
+  // are kept if the run is interrupted (kept_lines.h), and go on after those that are there with
+  // --resume. The program and its arguments must outlive this. Throws as file::Output and
+  // KeptLines.
+  ResultOutput(const Program& program, const Arguments& arguments,
+               std::span<const CsvColumn> columns);
+  // Says how to go on if lines are kept.
+  ~ResultOutput();
+  ResultOutput(const ResultOutput&) = delete;
+  ResultOutput& operator=(const ResultOutput&) = delete;
 
+  // Returns the number of poses whose lines are all there, at `lines` for each: append() expects
+  // the next pose. To be called first, and only if a pose does not depend on those before it;
+  // otherwise append() passes over the lines that are there.
+  std::size_t pass_over(std::size_t lines);
   // Writes a line at once. File names that are not UTF-8 are escaped in JSON.
   void append(const nlohmann::ordered_json& line);
-  void finish() { output_.finish(); }
+  void finish();
 
  private:
-  file::Output output_;
+  void write_names();
+  void write(const std::string& line);
+
+  const Program& program_;
+  const std::string& path_;
   std::span<const CsvColumn> columns_;  // none for JSON
+  std::string names_;                   // of the columns, until they are written
+  std::optional<KeptLines> kept_;       // either this one
+  std::optional<file::Output> straight_;
+  std::size_t there_ = 0;  // lines of results of an earlier run that append() has yet to reach
+  bool is_finished_ = false;
 };
 
 }  // namespace vpm::tools

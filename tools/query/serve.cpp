@@ -86,7 +86,7 @@ Line with_id(const std::string& id) {
 class Server {
  public:
   explicit Server(QuerySetup& setup)
-      : setup_(setup), output_(setup.arguments.output, result_columns()) {
+      : setup_(setup), output_(setup.program, setup.arguments, result_columns()) {
     const std::string& cloud = setup.arguments.cloud;
     if (!cloud.empty()) see(cloud, read_scene(cloud, {}));
     if (cloud.empty() && !setup.solids.empty()) scene_ = std::make_unique<CloudScene>(setup);

@@ -15,11 +15,13 @@ namespace {
 // Queries of all tools, each at the level that the request chooses for it.
 class SeveralTools {
  public:
-  SeveralTools(QuerySetup& setup, CloudScene& scene, const Pose& first_pose)
+  // `asked` poses were asked by a run that was interrupted.
+  SeveralTools(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, std::size_t asked)
       : setup_(setup),
         scene_(scene),
         tools_(setup.tools.size()),
-        query_(setup.tools, setup.options, setup.level, scene.scene(), first_pose) {
+        query_(setup.tools, setup.options, setup.level, scene.scene(), first_pose),
+        poses_asked_(asked) {
     for (std::size_t tool = 0; tool < tools_; ++tool) note_scale(setup.program, query_, tool);
   }
 
@@ -38,15 +40,11 @@ class SeveralTools {
     poses_asked_ += poses.size();
   }
 
+  std::size_t asked() const { return poses_asked_; }
   // Returns the time of each answer, which is the mean of those asked together, s.
   const std::vector<double>& seconds() const { return seconds_; }
 
-  // Returns the number of spheres of each tool's level.
-  std::vector<std::uint32_t> levels() const {
-    std::vector<std::uint32_t> levels;
-    for (std::size_t tool = 0; tool < tools_; ++tool) levels.push_back(query_.level(tool));
-    return levels;
-  }
+  const LevelQuery& query() const { return query_; }
 
  private:
   std::vector<Result> timed_results(const std::vector<AskedPose>& asked) {
@@ -71,7 +69,7 @@ class SeveralTools {
   CloudScene& scene_;
   std::size_t tools_;
   LevelQuery query_;
-  std::size_t poses_asked_ = 0;
+  std::size_t poses_asked_;
   std::vector<double> seconds_;
 };
 
@@ -82,8 +80,9 @@ void run_several_tools(QuerySetup& setup) {
   PoseSource source(a);
   CloudScene scene(setup);
   const Pose first = source.first().pose;
-  ResultOutput output(a.output, result_columns());
-  SeveralTools tools(setup, scene, first);
+  ResultOutput output(setup.program, a, result_columns());
+  SeveralTools tools(setup, scene, first, output.pass_over(setup.tools.size()));
+  source.pass_over(tools.asked());
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     tools.ask(poses, output);
   output.finish();
@@ -91,7 +90,7 @@ void run_several_tools(QuerySetup& setup) {
   scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
   if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
-  stats["levels"] = tools.levels();
+  add_levels(stats, tools.query(), setup.tools.size());
   write_stats_and_view(setup, std::move(stats));
 }
 

@@ -125,7 +125,7 @@ $ vpm-query --tool cube.vpmg --cloud two.vpmc --poses still.txt --realtime
 2> vpm-query: error: --realtime does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --frames steps
-2> vpm-query: error: --trajectory is missing: give the path of the tool through the frames
+2> vpm-query: error: --poses is missing: give the path of the haptic device, or with --frames the path of the tool
 [2]
 $ vpm-query --tool cube.vpmg --frames steps --cloud two.vpmc --trajectory still.txt
 2> vpm-query: error: --cloud does not go with recorded frames, chosen by --frames: leave it out
