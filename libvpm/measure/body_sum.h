@@ -29,6 +29,8 @@ struct BodySum {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0;  // spheres
   std::optional<std::uint32_t> points;     // points in spheres, if counted
+  std::optional<UnseenSum> unseen;         // of a body that is a camera's (TellsSight)
+  bool knows_all_space = false;            // of a closed solid: what it does not hold is free
 
   friend bool operator==(const BodySum&, const BodySum&) = default;
 };
@@ -45,6 +47,8 @@ class SceneSum {
     boundary_ += body.boundary;
     inside_ += body.inside;
     if (body.points) points_ = points_.value_or(0) + *body.points;
+    bodies_that_know_ += body.knows_all_space;
+    if (body.unseen) visibility_ = visibility_of(*body.unseen, s.volume.real()), ++cameras_;
     ++bodies_;
   }
 
@@ -60,10 +64,27 @@ class SceneSum {
     result.boundary = boundary_;
     result.inside = inside_;
     result.points = points_;
+    if (cameras_ == 1) result.visibility = visibility_;
+    if (bodies_ > 0 && bodies_that_know_ == bodies_)
+      result.visibility = visibility_of({}, result.volume_fraction);
     return result;
   }
 
  private:
+  // Returns the fractions for a camera's body, or for solids, at which nothing is unseen. The
+  // weights of a tool's parts add up to 1 up to rounding: what that leaves was seen free, and what
+  // it exceeds is taken from the rest.
+  static Visibility visibility_of(const UnseenSum& sum, double volume_fraction) {
+    const auto least = [](double a, double b) { return a < b ? a : b; };
+    Visibility is;
+    double rest = 1 - least(volume_fraction, 1);
+    is.out_of_view = least(sum.out_of_view.real(), rest);
+    rest -= is.out_of_view;
+    is.unseen = least(sum.unseen.real(), rest);
+    is.seen_free = rest - is.unseen;
+    return is;
+  }
+
   // Sums the halves of 64-bit numbers.
   struct Wide {
     std::int64_t high = 0, low = 0;
@@ -80,8 +101,9 @@ class SceneSum {
   double real(int term) const { return terms_[term].real() / ToolSum::Sum::kOne; }
 
   Wide terms_[kTerms];  // volume, force, torque
-  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0;
+  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, bodies_that_know_ = 0;
   std::optional<std::uint32_t> points_;
+  Visibility visibility_;  // of the last camera
 };
 
 // Returns the answer of a scene of one body.

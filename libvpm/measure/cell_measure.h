@@ -18,10 +18,11 @@
 namespace vpm {
 
 struct CellResult {
-  ToolSum sum;                     // tool axes, arms about the centre of mass
-  ContactPlane plane;              // plane.count > 0: the surface cuts the cell
-  bool is_far = false;             // a piece needs the support of a plane (is_far_behind)
-  std::uint32_t far_count = 0;     // such pieces that run() has listed
+  ToolSum sum;                  // tool axes, arms about the centre of mass
+  ContactPlane plane;           // plane.count > 0: the surface cuts the cell
+  bool is_far = false;          // a piece needs the support of a plane (is_far_behind)
+  std::uint32_t far_count = 0;  // such pieces that run() has listed
+  UnseenSum unseen;             // of the cell, with all far pieces that its plane does not support
   std::uint32_t point = kNoPoint;  // disk sampled last, where the next search begins
 };
 
@@ -113,21 +114,24 @@ class CellMeasure {
       const auto supports = [&](Vec3 x, Vec3 foot) {
         return own.supports(x, foot, tool_radius_.length);
       };
-      samples.add_far(*this, {far, result.far_count}, supports, result.sum);
+      samples.add_far(*this, {far, result.far_count}, supports, result.sum, result.unseen);
     }
     return result;
   }
 
-  // Adds the far pieces that run() has listed. `supports(x, foot)` is true if the plane of a cut
+  // Adds the far pieces that run() has listed, and takes them from `unseen`, where run() has put
+  // them. `supports(x, foot)` is true if the plane of a cut
   // cell supports a place x behind the surface's place `foot`: a surface further away than the
   // tool's radius may be another one than that which cuts the tool.
   template <class Supports>
-  void add_far(std::span<const PieceIndex> pieces, const Supports& supports, ToolSum& sum) const {
+  void add_far(std::span<const PieceIndex> pieces, const Supports& supports, ToolSum& sum,
+               UnseenSum& unseen) const {
     for (const PieceIndex& far : pieces) {
       const ToolPiece piece = piece_of_far(far);
       const PieceSample sampled = sample_piece(piece);
-      if (supports(sampled.x, sampled.on_surface.foot))
-        push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
+      if (!supports(sampled.x, sampled.on_surface.foot)) continue;
+      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
+      unseen.remove_occluded(piece.weight);
     }
   }
   ToolPiece piece_of_far(const PieceIndex& far) const {
@@ -141,12 +145,14 @@ class CellMeasure {
     TangentPlane plane;  // set for a cut block
     Vec3 center;
     std::uint32_t point = kNoPoint;  // disk where the next search begins
+    Sight sight = Sight::seen;
   };
   VPM_HD ClassifiedBlock classify_block(const CellBlock& block) const {
     ClassifiedBlock result;
     result.center = to_surface_ * widen(block.center);
     const auto in_ball = surface_.classify_ball(result.center, block.radius);
     result.point = in_ball.point;
+    result.sight = sight_of<Surface>(in_ball);
     result.found = class_of_block(
         surface_, in_ball, result.center, block.radius, tool_radius_,
         [&] { return surface_.sample(result.center); }, result.plane);
@@ -158,7 +164,8 @@ class CellMeasure {
   void add_block(std::uint32_t b, Samples& samples, PieceIndex* far, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const ClassifiedBlock sampled = classify_block(block);
-    if (sampled.found == BlockClass::free) return;
+    if (sampled.found == BlockClass::free)
+      return add_free(cell_.masses[b], sampled.sight, result.unseen);
     if (sampled.point != kNoPoint) result.point = sampled.point;
     if (sampled.found == BlockClass::uncut) {
       add_piece(piece_of(cell_.masses[b], block), PieceIndex::block(b), far, result);
@@ -189,6 +196,22 @@ class CellMeasure {
     if (!sampled.is_inside) return sampled;
     sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_radius_);
     return sampled;
+  }
+  // Adds a block or cell on the free side of the surface, which is taken whole: where the sight of
+  // its ball is mixed, as it is at its centroid.
+  VPM_HD void add_free(const BlockMass& mass, Sight of_ball, UnseenSum& unseen) const {
+    if (of_ball == Sight::seen) return;
+    unseen.add(mass.weight,
+               of_ball == Sight::mixed ? sight_at(surface_, to_surface_ * mass.centroid) : of_ball);
+  }
+  // Adds a piece that was sampled and that does not count: nothing is known there, or it is far
+  // behind the surface. Of one that counts, the part that is before the surface was seen free.
+  VPM_HD void add_unseen(const ToolPiece& piece, const PieceSample& sampled,
+                         UnseenSum& unseen) const {
+    if (sampled.is_far)
+      unseen.add_occluded(piece.weight);
+    else if (!sampled.on_surface.known)
+      unseen.add(piece.weight, sight_at(surface_, sampled.x));
   }
   VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
     return side_of(piece, sampled.on_surface) == PlaneSide::cut;
@@ -261,9 +284,10 @@ class CellMeasure {
     if (is_cut(piece, sampled)) add_to_plane(sampled, result.plane);
     return !sampled.is_far;
   }
-  // Does so in run(), which lists far pieces.
+  // Does so in run(), which lists far pieces and adds what was not seen.
   bool note(const ToolPiece& piece, const PieceSample& sampled, PieceIndex name, PieceIndex* far,
             CellResult& result) const {
+    add_unseen(piece, sampled, result.unseen);
     if (sampled.is_far) far[result.far_count++] = name;
     return note(piece, sampled, result);
   }
@@ -347,8 +371,8 @@ struct SamplesInTurn {
   void flush(const Measure&, CellResult&) const {}
   template <class Measure, class Supports>
   static void add_far(const Measure& measure, std::span<const PieceIndex> pieces,
-                      const Supports& supports, ToolSum& sum) {
-    measure.add_far(pieces, supports, sum);
+                      const Supports& supports, ToolSum& sum, UnseenSum& unseen) {
+    measure.add_far(pieces, supports, sum, unseen);
   }
   static VPM_HD ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
                                        std::uint32_t count) {

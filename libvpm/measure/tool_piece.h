@@ -48,6 +48,43 @@ struct ToolSum {
   }
 };
 
+// Sums the parts of a tool that no camera tells of, in parts of its volume, with the same bits in
+// any order. What neither counts as volume nor is here was seen free.
+struct UnseenSum {
+  using Sum = ToolSum::Sum;
+  Sum unseen, out_of_view;  // in holes or occluded; outside of the image
+
+  friend bool operator==(const UnseenSum&, const UnseenSum&) = default;
+
+  // Adds a part of which nothing counts as volume, by what the camera sees in its direction: not
+  // mixed.
+  VPM_HD void add(Sum part, Sight sight) {
+    if (sight == Sight::hole) unseen.add(part);
+    if (sight == Sight::out_of_view) out_of_view.add(part);
+  }
+  VPM_HD void add(double part, Sight sight) {
+    if (sight != Sight::seen) add(rounded(part), sight);
+  }
+  // Adds and takes away a part that the surface hides.
+  VPM_HD void add_occluded(double part) { unseen.add(rounded(part)); }
+  VPM_HD void remove_occluded(double part) { unseen.value -= rounded(part).value; }
+  VPM_HD static Sum rounded(double part) {
+    Sum sum;
+    sum.add(part);
+    return sum;
+  }
+
+  VPM_HD void add(const UnseenSum& other) {
+    unseen.add(other.unseen);
+    out_of_view.add(other.out_of_view);
+  }
+  // Adds `other`; many threads may do so at once.
+  void add_atomically(const UnseenSum& other) {
+    vpm::add_atomically(unseen.value, other.unseen.value);
+    vpm::add_atomically(out_of_view.value, other.out_of_view.value);
+  }
+};
+
 // Holds volume and centroid of a block's samples together, which the file does not store.
 struct BlockMass {
   Vec3 centroid;      // about the tool's centre of mass

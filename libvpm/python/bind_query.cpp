@@ -4,7 +4,9 @@
 #include <vpm/query.h>
 #include <vpm/setup_check.h>
 
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "libvpm/python/arrays.h"
 #include "libvpm/python/locked.h"
@@ -52,6 +54,19 @@ py::array column_of(const py::object& owner, const Value Result::*member) {
   py::detail::array_proxy(column.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return column;
 }
+// Returns what a camera knows, one fraction of it; None without a camera.
+std::optional<double> fraction_of(const Result& result, double Visibility::*member) {
+  if (!result.visibility) return std::nullopt;
+  return (*result.visibility).*member;
+}
+// Returns that of all results as a new array, with NaN for None.
+py::array fractions_of(const Results& results, double Visibility::*member) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  py::array_t<double> fractions(static_cast<py::ssize_t>(results.answers.size()));
+  double* out = fractions.mutable_data();
+  for (const Result& result : results.answers) *out++ = fraction_of(result, member).value_or(kNone);
+  return fractions;
+}
 // The same for a vector of the wrench: shape (N, 3).
 py::array column_of(const py::object& owner, const Vec3 Wrench::*member) {
   const auto& answers = owner.cast<const Results&>().answers;
@@ -67,6 +82,20 @@ void bind_results(py::module_& module) {
       .def_readonly("volume", &Result::volume, "Volume of the tool inside the scene's solid, m^3.")
       .def_readonly("volume_fraction", &Result::volume_fraction,
                     "That volume over the volume of the tool.")
+      .def_property_readonly(
+          "seen_free",
+          [](const Result& result) { return fraction_of(result, &Visibility::seen_free); },
+          "Part of the tool before the surface that the scene's camera sees; None without a camera "
+          "and for the paper measure. With volume_fraction, unseen and out_of_view it adds up to "
+          "1.")
+      .def_property_readonly(
+          "unseen", [](const Result& result) { return fraction_of(result, &Visibility::unseen); },
+          "Part that the surface hides, without the volume, or where nothing was measured; or "
+          "None.")
+      .def_property_readonly(
+          "out_of_view",
+          [](const Result& result) { return fraction_of(result, &Visibility::out_of_view); },
+          "Part outside of the image, or behind the camera; or None.")
       .def_property_readonly(
           "force", [](const Result& result) { return array_of(result.wrench.force); },
           "Array (3,) in world axes, which pushes the tool out: N, or m^3 with stiffness 1.")
@@ -96,6 +125,18 @@ void bind_results(py::module_& module) {
           "volume_fraction",
           [](const py::object& self) { return column_of(self, &Result::volume_fraction); },
           "Array (N,).")
+      .def_property_readonly(
+          "seen_free",
+          [](const Results& results) { return fractions_of(results, &Visibility::seen_free); },
+          "Array (N,), NaN where a Result has None.")
+      .def_property_readonly(
+          "unseen",
+          [](const Results& results) { return fractions_of(results, &Visibility::unseen); },
+          "Array (N,), NaN where a Result has None.")
+      .def_property_readonly(
+          "out_of_view",
+          [](const Results& results) { return fractions_of(results, &Visibility::out_of_view); },
+          "Array (N,), NaN where a Result has None.")
       .def_property_readonly(
           "force", [](const py::object& self) { return column_of(self, &Wrench::force); },
           "Array (N, 3) in world axes: N, or m^3 with stiffness 1.")
@@ -151,8 +192,11 @@ void bind_single_query(py::module_& module) {
            "tools: a vpm.Tool, or a list of them.\nmeasure: \"refined\", or \"paper\", the "
            "algorithm as printed.\nlevel: number of spheres; 0: the finest level.\ndevice: "
            "\"cpu\", \"cuda\", \"cuda:1\", \"cuda:all\" or \"auto\".\ncoherent: the poses are "
-           "those of one motion.\nshadows: \"near\" or \"solid\": which places count that a depth "
-           "image does not show.\nstiffness: N/m^3; with 1 force and torque are in m^3 and "
+           "those of one motion.\nshadows: what counts of the places that a depth image does not "
+           "show. near: those at most the tool radius behind what it shows, and further behind "
+           "those "
+           "that a surface which cuts the tool supports. solid: all of them.\nstiffness: N/m^3; "
+           "with 1 force and torque are in m^3 and "
            "m^4.\n\nRaises ArgumentError for options out of range or that exclude each other, "
            "UnavailableError if the device is not there.")
       .def(

@@ -40,6 +40,7 @@ SolidPair& SolidQuery::pair_with(const PlacedSolid& solid, std::size_t k) {
 // Takes the wrench about the tool's centre of mass and into its axes.
 BodySum SolidQuery::sum_of(const SharedSolid& shared, const Pose& pose) const {
   BodySum body;
+  body.knows_all_space = true;
   ToolSum& sum = body.sum;
   sum.volume.add(std::min(shared.volume / tool_.volume, 1.0));
   if (sum.volume.value == 0) return body;

@@ -2,11 +2,11 @@
 // it learns of the surface. DepthSurface (a camera's image, by projection) and DiskSurface (points
 // without a camera, by the nearest disk) answer; README.md has the reasons.
 //
-// MeasuredBody is the concept; SeesFreeSpace, BoundsGap and HasOtherWalls are what some bodies know
-// besides; SharesPixels, what is faster so. The functions below ask for these and answer for bodies
-// that do not have them; such an answer costs work or leaves a refinement out, and is never wrong.
-// All members are const and may be called by many threads at once. Places are in the body's own
-// frame, m.
+// MeasuredBody is the concept; SeesFreeSpace, TellsSight, BoundsGap and HasOtherWalls are what some
+// bodies know besides; SharesPixels, what is faster so. The functions below ask for these and
+// answer for bodies that do not have them; such an answer costs work or leaves a refinement out,
+// and is never wrong. All members are const and may be called by many threads at once. Places are
+// in the body's own frame, m.
 #pragma once
 
 #include <concepts>
@@ -35,6 +35,14 @@ enum class Side : std::uint8_t {
   behind,      // wholly behind the surface
   no_surface,  // no surface passes through it; a sample at its centre holds for all of it
   ambiguous,   // undecided
+};
+
+// Tells what a camera sees in the direction of a place, or of all places in a ball.
+enum class Sight : std::uint8_t {
+  seen,         // a surface was measured there: the place is before it or behind it
+  hole,         // in view, but nothing was measured there
+  out_of_view,  // outside of the image, or behind the camera
+  mixed,        // of a ball only: its places may differ
 };
 
 // Index that stands for no point.
@@ -171,6 +179,15 @@ concept SeesFreeSpace = MeasuredBody<B> &&
   { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
 };
 
+// True for a body that knows what of space its camera sees: sight_at() a place, and of all places
+// in a classified ball, which may be mixed.
+template <class B>
+concept TellsSight = MeasuredBody<B> &&
+    requires(const B& body, Vec3 x, const typename B::BallClass& in_ball) {
+  { body.sight_at(x) } -> std::same_as<Sight>;
+  { B::sight_of(in_ball) } -> std::same_as<Sight>;
+};
+
 // True for a body whose side_of() asks pixels of an ambiguous ball, which lanes of a device share:
 // may_be_seen_past() rules most balls out, and is_seen_past() tests the rows first, first + step,
 // ... of pixels_of() a ball against a depth, which is that of the farthest place in the ball.
@@ -247,6 +264,22 @@ VPM_HD bool may_hold_free(const B& body, const typename B::BallClass& in_ball, V
     return body.may_hold_free(in_ball, center, radius);
   else
     return false;
+}
+// Return what is seen in the direction of a place, and of all places in a classified ball. A body
+// without a camera knows of no place that is not seen.
+template <MeasuredBody B>
+VPM_HD Sight sight_at(const B& body, Vec3 x) {
+  if constexpr (TellsSight<B>)
+    return body.sight_at(x);
+  else
+    return Sight::seen;
+}
+template <MeasuredBody B>
+VPM_HD Sight sight_of(const typename B::BallClass& in_ball) {
+  if constexpr (TellsSight<B>)
+    return B::sight_of(in_ball);
+  else
+    return Sight::seen;
 }
 // Returns a bound of the distance, m, from any place of a classified ball to the foot of its
 // surface sample; infinite where the body knows none.

@@ -9,6 +9,16 @@ namespace {
 
 constexpr std::size_t kMostPieces = 256;  // at most this many, evenly chosen from a tool
 
+// Returns the numbers of poses in words; of many the first ones, and how many others there are.
+std::string named(const std::vector<std::size_t>& numbers) {
+  constexpr std::size_t kMostNamed = 3;
+  const std::size_t count = numbers.size(), some = count > kMostNamed ? kMostNamed - 1 : count;
+  std::string text = count > 1 ? "poses " : "pose ";
+  for (std::size_t k = 0; k < some; ++k)
+    text += (k == 0 ? "" : k + 1 < count ? ", " : " and ") + std::to_string(numbers[k]);
+  return some < count ? text + " and " + std::to_string(count - some) + " others" : text;
+}
+
 }  // namespace
 
 ContinuedDepth::ContinuedDepth(const DepthSurface& surface, double length)
@@ -83,22 +93,26 @@ bool MeasuredCheck::is_unmeasured(const ContinuedDepth& continued, const ToolPos
 }
 
 MeasuredCheck::Found MeasuredCheck::found() const {
-  Found found{poses_.kept().size(), 0};
+  Found found{poses_.kept().size(), 0, {}};
   if (found.poses == 0) return found;
   double reach = 0;
   for (const ToolModel* const model : tools_) reach = std::max(reach, model->radius);
   const ContinuedDepth continued(surface_, 2 * reach);
-  found.unmeasured = static_cast<std::size_t>(std::ranges::count_if(
-      poses_.kept(), [&](const ToolPose& at) { return is_unmeasured(continued, at); }));
+  for (const ToolPose& at : poses_.kept()) {
+    if (!is_unmeasured(continued, at)) continue;
+    ++found.unmeasured;
+    found.numbers.push_back(at.number);
+  }
+  std::ranges::sort(found.numbers);
+  const auto again = std::ranges::unique(found.numbers);
+  found.numbers.erase(again.begin(), again.end());
   return found;
 }
 
 std::optional<Remark> MeasuredCheck::remark(const Found& found) const {
   if (found.unmeasured == 0) return std::nullopt;
   return Remark{true,
-                "at " + std::to_string(found.unmeasured) + " of " + std::to_string(found.poses) +
-                    (tools_.size() > 1 ? " poses of tools" : " poses") +
-                    (poses_.stride() > 1 ? " looked at" : "") +
+                "at " + named(found.numbers) + (poses_.stride() > 1 ? " of those looked at" : "") +
                     " a quarter or more of the tool behind the surface lies where nothing "
                     "was measured, and counts for nothing: move the camera, or fill the holes"};
 }

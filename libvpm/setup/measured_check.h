@@ -45,24 +45,26 @@ class MeasuredCheck {
   // Keeps references to the tools and to the image that the surface shows.
   MeasuredCheck(std::span<const ToolModel* const> tools, const DepthSurface& surface,
                 const Pose& camera_to_world)
-      : tools_(tools), surface_(surface), camera_to_world_(camera_to_world) {}
+      : tools_(tools), surface_(surface), camera_to_world_(camera_to_world), seen_(tools.size()) {}
 
   // Notes a pose of the k-th tool.
-  void see(const Pose& pose, std::size_t k) { poses_.add({pose, k}); }
+  void see(const Pose& pose, std::size_t k) { poses_.add({pose, k, seen_[k]++}); }
   // Returns how many of the noted poses were looked at, and at how many of these a quarter or more
   // of what a tool has behind the surface lies at holes of the image or out of it, where no volume
-  // counts.
+  // counts; and the numbers of these poses, from 0, ascending and once if it is so of several
+  // tools.
   struct Found {
     std::size_t poses = 0, unmeasured = 0;
+    std::vector<std::size_t> numbers;
   };
   Found found() const;
-  // Returns a warning if there are such poses.
+  // Returns a warning that names such poses, if there are some.
   std::optional<Remark> remark(const Found& found) const;
 
  private:
   struct ToolPose {
     Pose pose;
-    std::size_t tool = 0;
+    std::size_t tool = 0, number = 0;
   };
 
   bool is_unmeasured(const ContinuedDepth& continued, const ToolPose& at) const;
@@ -70,6 +72,7 @@ class MeasuredCheck {
   std::span<const ToolModel* const> tools_;
   DepthSurface surface_;
   Pose camera_to_world_;
+  std::vector<std::size_t> seen_;  // poses of each tool so far
   EvenSample<ToolPose> poses_;
 };
 

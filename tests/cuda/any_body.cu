@@ -26,7 +26,7 @@ BodySum run(const ToolModel& tool, const Body& body, const Pose& pose) {
                 to_surface, 1U);
   const RawResult raw = wait_for(*answer.host(), 1, stream.get());
   check(cudaStreamSynchronize(stream.get()));
-  return sum_of(raw);
+  return sum_of<Body>(raw);
 }
 
 }  // namespace

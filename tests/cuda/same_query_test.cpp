@@ -131,6 +131,35 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   }
 }
 
+// Passes through the wall, its hole, the space that it hides, and out of the view.
+TEST(UnseenOnDevice, IsTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const AnyBody cloud(testing::wall_with_hole());
+  constexpr int kPoses = testing::effort(96);
+  std::vector<Pose> poses = poses_of(kPoses);
+  for (int k = 0; k < kPoses; ++k)
+    poses[k].translation = {2.0 * k / kPoses - 1, poses[k].translation.y, 0.1 + 0.4 * (k % 5)};
+  double unseen = 0, out_of_view = 0;
+  for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
+                                testing::lattice_cube(0.25, 21, 1)}) {
+    QueryOptions options;
+    ToolQuery on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    ToolQuery on_device(tool, options);
+    std::vector<Result> expected;
+    for (const Pose& pose : poses) {
+      expected.push_back(on_cpu.run(cloud, pose));
+      SCOPED_TRACE(expected.size());
+      expect_equal(expected.back(), on_device.run(cloud, pose));
+      unseen += expected.back().visibility->unseen;
+      out_of_view += expected.back().visibility->out_of_view;
+    }
+    expect_same_batch(on_device, cloud, poses, expected);
+  }
+  EXPECT_GT(unseen, testing::expected_of(20));
+  EXPECT_GT(out_of_view, testing::expected_of(20));
+}
+
 // Alternates images and points: notes of one path through the kernels must not reach the other.
 TEST(ImagesAndPoints, GiveTheSameByTurns) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";

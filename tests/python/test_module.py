@@ -61,6 +61,8 @@ def test_half_of_a_cube_is_behind_a_wall(tool, scene):
     # The energy of a cube half behind a plane: the area times the mean depth, 0.04 * 0.1^2 / 2, has this derivative.
     assert result.force == pytest.approx([0, 0, -100 * 0.04 * 0.1], rel=0.01, abs=1e-6)
     assert result.points is None
+    assert result.volume_fraction + result.seen_free + result.unseen + result.out_of_view == pytest.approx(1, abs=1e-9)
+    assert result.seen_free == pytest.approx(0.5, abs=2e-3)
 
 
 def test_a_batch_has_the_bits_of_single_poses_in_every_form(tool, scene):
@@ -69,7 +71,7 @@ def test_a_batch_has_the_bits_of_single_poses_in_every_form(tool, scene):
     singles = [query.run(scene, pose) for pose in poses]
     batch = query.run_batch(scene, poses)
     assert len(batch) == 50 and batch.force.shape == (50, 3) and batch.volume.dtype == np.float64
-    for name in ("volume", "volume_fraction", "force", "torque", "boundary", "inside"):
+    for name in ("volume", "volume_fraction", "seen_free", "unseen", "out_of_view", "force", "torque", "boundary", "inside"):
         expected = np.array([getattr(single, name) for single in singles])
         assert np.array_equal(getattr(batch, name), expected)
     assert batch[-1].volume == batch.volume[49]

@@ -132,7 +132,7 @@ TEST_P(DepthReadings, OfFourPlacesAreThoseOfEach) {
   EXPECT_GT(known, 5000);
 }
 
-TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceReaches) {
+TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceMayReach) {
   int reached = 0, of_no_size = 0;
   for (int k = 0; k < 2000; ++k) {
     const Pose to_surface{testing::generic_rotation(), any_place(numbers_)};
@@ -147,7 +147,7 @@ TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceReaches) {
     for (std::uint32_t s = 0; s < samples.size(); ++s) {
       const Vec3 x = to_surface * widen(samples[s].center);
       const SurfaceSample on_surface = surface_.sample(x);
-      if (!(on_surface.known && on_surface.distance < samples[s].radius)) continue;
+      if (on_surface.known && !(on_surface.distance < samples[s].radius)) continue;
       ASSERT_LT(found, together.size());
       EXPECT_EQ(together[found].sample, s);
       expect_same(together[found].at.x, x);
@@ -179,6 +179,7 @@ void expect_same(const CellResult& a, const CellResult& b) {
   EXPECT_EQ(a.plane.count, b.plane.count);
   EXPECT_EQ(a.is_far, b.is_far);
   EXPECT_EQ(a.far_count, b.far_count);
+  EXPECT_EQ(a.unseen, b.unseen);
 }
 
 // Expects the same lists of far pieces, and the same sum of those on one side of the tool, taken
@@ -192,9 +193,11 @@ void expect_same_far_pieces(const CellMeasure<DepthSurface>& measure,
     return x.x > measure.to_surface().translation.x && foot.z > 0;
   };
   ToolSum sum, of_together;
-  measure.add_far(in_turn, supports, sum);
-  SamplesTogether::add_far(measure, together, supports, of_together);
+  UnseenSum unseen, unseen_together;
+  measure.add_far(in_turn, supports, sum, unseen);
+  SamplesTogether::add_far(measure, together, supports, of_together, unseen_together);
   EXPECT_EQ(sum, of_together);
+  EXPECT_EQ(unseen, unseen_together);
 }
 
 TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {

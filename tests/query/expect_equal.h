@@ -16,6 +16,7 @@ inline void expect_equal(const Result& a, const Result& b, double scale = 1) {
   EXPECT_EQ(a.boundary, b.boundary);
   EXPECT_EQ(a.inside, b.inside);
   EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.visibility, b.visibility);
 }
 
 }  // namespace vpm::testing

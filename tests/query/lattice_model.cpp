@@ -109,6 +109,23 @@ Cloud see(const synthetic::Scene& scene) {
   return assemble_cloud(depth, scene.camera, normals);
 }
 
+Cloud wall_with_hole() {
+  Camera camera;
+  camera.intrinsics = {150, 150, 79.5, 59.5};
+  camera.width = 160, camera.height = 120;
+  DepthImage image;
+  image.width = camera.width, image.height = camera.height;
+  image.depth.resize(std::size_t{image.width} * image.height, 1.0F);
+  std::vector<Vec3f> normals(image.depth.size(), {0, 0, -1});
+  for (std::uint32_t v = kHoleDown.begin; v < kHoleDown.end; ++v) {
+    for (std::uint32_t u = kHoleAcross.begin; u < kHoleAcross.end; ++u) {
+      image.depth[image.index(u, v)] = 0;
+      normals[image.index(u, v)] = {};
+    }
+  }
+  return assemble_cloud(image, camera, normals);
+}
+
 Rotation generic_rotation() {
   Quaternion q{0.31, -0.57, 0.21, 0.73};
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);

@@ -18,6 +18,15 @@ std::vector<Vec3> places_in_cube(double edge, int per_edge);
 // Returns the cloud that the scene's camera sees, with the surface's own normals.
 Cloud see(const synthetic::Scene& scene);
 
+// Returns the cloud of a flat wall at a depth of 1 m, 1 m wide, of which a rectangle of pixels was
+// not measured: kHole of them along each axis.
+Cloud wall_with_hole();
+struct PixelSpan {
+  std::uint32_t begin, end;
+  bool holds(double pixel) const { return pixel >= begin - 0.5 && pixel < end - 0.5; }
+};
+inline constexpr PixelSpan kHoleAcross{60, 100}, kHoleDown{30, 90};
+
 // Returns a generic rotation, so that nothing is aligned by chance.
 Rotation generic_rotation();
 

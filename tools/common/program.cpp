@@ -182,7 +182,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& job) {
     set_thread_count(common_.threads);
     job();
     flush_output();
-    return 0;
+    return answer_;
   } catch (const CLI::Success& asked) {  // --help, --version
     const int code = app_.exit(asked);
     errno = 0;

@@ -49,6 +49,9 @@ class Program {
   void show_exit_code(int code, std::string meaning) {
     help_->add_exit_code(code, std::move(meaning));
   }
+  // Lets run() return this where the job does not fail, in place of 0: the answer to a question of
+  // a script.
+  void end_with(int code) { answer_ = code; }
 
   // Parses the command line and runs `job`. Turns every error into a message on standard error and
   // returns the exit code.
@@ -83,6 +86,7 @@ class Program {
   CommonOptions common_;
   bool dump_config_ = false;
   bool on_devices_ = false;
+  int answer_ = 0;
 };
 
 // What a file holds that is no container: what its name's ending says, JSON, lines of results (JSON

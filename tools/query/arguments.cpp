@@ -107,14 +107,25 @@ void declare_measure(CLI::App& app, Arguments& a) {
                  "N/m^3: scales force and torque; without, or 1, they are in m^3 and m^4")
       ->option_text("K");
   app.add_option("--shadows", a.shadows,
-                 "What counts of places that a depth image does not show: those near behind what "
-                 "it shows, or all: solid")
+                 "What counts of the places that a depth image does not show. near: those at most "
+                 "the tool radius behind what it shows, and further behind those that a surface "
+                 "which cuts the tool supports. solid: all of them")
       ->check(CLI::IsMember({"near", "solid"}))
       ->capture_default_str();
   app.add_flag("--raw-points", a.raw_points,
                "Take points as they were measured: a cloud is ready sooner, without a camera in a "
                "tenth of the time, but noise errs more, and without a camera edges and thin plates "
                "do too; queries take longer");
+}
+
+void declare_collisions(CLI::App& app, Arguments& a) {
+  app.add_flag("--collides", a.collides,
+               "Say whether the tool collides: yes, no, or unknown where too much of it is unseen; "
+               "exit status 10 of a hit, else 11 if a pose is unknown");
+  app.add_option("--unseen", a.unseen_limit,
+                 "Part of the tool that may be unseen or out of view where --collides says no")
+      ->check(number_in(0, 1))
+      ->capture_default_str();
 }
 
 void declare_level(CLI::App& app, Arguments& a) {
@@ -206,6 +217,7 @@ void declare(CLI::App& app, Arguments& a) {
   declare_outputs(app, a);
   declare_requests(app, a);
   declare_measure(app, a);
+  declare_collisions(app, a);
   declare_level(app, a);
   declare_motion(app, a);
   declare_frames(app, a.replay);

@@ -1,6 +1,8 @@
 // Options of vpm-query.
 #pragma once
 
+#include <vpm/collides.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +38,8 @@ struct Arguments {
   std::optional<double> deadline_us, stiffness;
   bool for_scene = false, coherent = false, raw_points = false, bodies = false;
   std::string coupling;
+  bool collides = false;
+  double unseen_limit = kUnseenLimit;
   std::size_t batch = 1;
   bool serve = false, resume = false;
   ReplayArguments replay;

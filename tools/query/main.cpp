@@ -14,17 +14,23 @@ void run(Program& program, const Arguments& arguments) {
   switch (mode) {
     case Mode::poses:
     case Mode::batches:
-      return run_poses(setup);
+      run_poses(setup);
+      break;
     case Mode::coupling:
-      return run_coupling(setup);
+      run_coupling(setup);
+      break;
     case Mode::frames:
     case Mode::tools_in_frames:
-      return run_frames(setup);
+      run_frames(setup);
+      break;
     case Mode::several_tools:
-      return run_several_tools(setup);
+      run_several_tools(setup);
+      break;
     case Mode::server:
-      return run_server(setup);
+      run_server(setup);
+      break;
   }
+  if (mode != Mode::server) program.end_with(setup.collisions.exit_code());
 }
 
 }  // namespace
@@ -35,6 +41,8 @@ int main(int argc, char** argv) {
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   declare(program.app(), arguments);
+  program.show_exit_code(10, "with --collides: at a pose there is a collision");
+  program.show_exit_code(11, "the same: at none there is one, but at some nobody can know");
   program.show_examples({
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",
       "vpm-query --tool tool.off --cloud scene.vpmc --poses poses.jsonl -o results.csv",

@@ -42,6 +42,8 @@ constexpr Row kTable[] = {
     {"--coupling", {yes, no, yes, yes, no, no, no}},
     {"--deadline-us", {yes, no, yes, yes, no, no, yes}},
     {"--coherent", {yes, no, yes, yes, no, no, yes}},
+    {"--collides", {yes, yes, no, yes, yes, yes, yes}},
+    {"--unseen", {yes, yes, no, yes, yes, yes, yes}},
     {"--spheres-out", {yes, yes, yes, yes, no, no, no}},
     {"--frames", {no, no, no, yes, no, yes, no}},
     {"--rate", {no, no, no, yes, no, yes, no}},
@@ -75,6 +77,8 @@ constexpr Pair kExclusive[] = {
     {"--resume", "--deadline-us"},
     {"--resume", "--spheres-out"},
     {"--resume", "--view"},
+    {"--resume", "--collides"},
+    {"--collides", "--coupling"},
 };
 
 struct Need {
@@ -86,6 +90,7 @@ struct Need {
 constexpr Need kNeeds[] = {
     {"--coupling", "--stiffness", "give the scene's stiffness in N/m^3"},
     {"--resume", "--output", "name the file of the run that was interrupted"},
+    {"--unseen", "--collides", "it says when that is unknown"},
 };
 
 struct Words {

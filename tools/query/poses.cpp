@@ -57,6 +57,7 @@ class PoseQueries {
     nlohmann::ordered_json line = result_line(asked_++, asked.id, result, query_.level(),
                                               setup_.options.measure, query_.reason(), {});
     if (setup_.arguments.bodies) line["bodies"] = bodies_of(query_.parts());
+    setup_.collisions.answer(result, line);
     output_.append(line);
     seconds_.push_back(query_.seconds());
   }

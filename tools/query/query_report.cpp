@@ -45,6 +45,11 @@ nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id
   }
   line["volume"] = r.volume;
   line["volume_fraction"] = r.volume_fraction;
+  if (r.visibility) {
+    line["seen_free"] = r.visibility->seen_free;
+    line["unseen"] = r.visibility->unseen;
+    line["out_of_view"] = r.visibility->out_of_view;
+  }
   line["force"] = {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z};
   line["torque"] = {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z};
   line["boundary"] = r.boundary;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/query/arguments.h"
+#include "tools/query/collisions.h"
 #include "tools/query/pose_view.h"
 
 namespace vpm::tools {
@@ -30,6 +31,7 @@ struct QuerySetup {
   std::vector<Body> solids;      // one per --solid
   Denoising points;              // how points without a camera are read
   std::optional<PoseView> view;  // empty without --view
+  Collisions collisions;         // of all lines of results
 };
 
 // Prints what the checks of a setup say.

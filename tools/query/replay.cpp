@@ -56,7 +56,7 @@ class Replay {
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen. The first `passed` steps are not asked.
   void run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-           Measure measure, std::size_t passed, ResultOutput& output,
+           Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
            std::optional<PoseView>& view);
 
   // Return what the checks of the setup compare poses and sizes with.
@@ -87,7 +87,7 @@ class Replay {
   // Shows the step that was asked last to the checks and the view, and writes
   // its lines.
   void tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-            ResultOutput& output, std::optional<PoseView>& view) const;
+            Collisions& collisions, ResultOutput& output, std::optional<PoseView>& view) const;
   std::string frame_name() const;
   // Returns step k of a tool, without rendered wrench and energy if there is no
   // coupling.
@@ -225,7 +225,8 @@ void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoup
 }
 
 void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-                  ResultOutput& output, std::optional<PoseView>& view) const {
+                  Collisions& collisions, ResultOutput& output,
+                  std::optional<PoseView>& view) const {
   if (view) view->see_frame(feed_->frame());
   for (std::size_t tool = 0; tool < now_.size(); ++tool) {
     const CoupledStep& step = now_[tool];
@@ -233,15 +234,17 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
     if (feed_->frame() && solids_.empty())
       check.see(step.tool, tool, step.contact, *feed_->frame());
     const auto index = tools_ > 1 ? std::optional(tool) : std::nullopt;
-    output.append(are_coupled ? coupled_line(step, frame_name())
-                              : result_line(step.step, {}, step.contact, query.level(tool), measure,
-                                            query.reason(tool),
-                                            StepOfReplay{step.time, frame_name()}, index));
+    nlohmann::ordered_json line =
+        are_coupled ? coupled_line(step, frame_name())
+                    : result_line(step.step, {}, step.contact, query.level(tool), measure,
+                                  query.reason(tool), StepOfReplay{step.time, frame_name()}, index);
+    collisions.answer(step.contact, line);
+    output.append(line);
   }
 }
 
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
-                 Measure measure, std::size_t passed, ResultOutput& output,
+                 Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
@@ -260,7 +263,7 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     if (change && !sizes_differ_) compare_size(*change);
-    if (k >= passed) tell(query, check, measure, coupling.has_value(), output, view);
+    if (k >= passed) tell(query, check, measure, coupling.has_value(), collisions, output, view);
   }
   wall_seconds_ = clock_->seconds();
   say_at_end();
@@ -366,7 +369,8 @@ void run_frames(QuerySetup& setup) {
   // Steps that depend on those before are asked again, and their lines passed over.
   const std::size_t passed =
       parameters || setup.options.coherent ? 0 : output.pass_over(tools.size());
-  replay.run(query, check, coupling, setup.options.measure, passed, output, setup.view);
+  replay.run(query, check, coupling, setup.options.measure, passed, setup.collisions, output,
+             setup.view);
   output.finish();
   const std::optional<Remark> missing = check.remark();
   if (missing && !sizes) say(setup.program, {*missing});

@@ -22,6 +22,9 @@ constexpr CsvColumn kResult[] = {
     {"frame", "/frame"},
     {"volume", "/volume"},
     {"volume_fraction", "/volume_fraction"},
+    {"seen_free", "/seen_free"},
+    {"unseen", "/unseen"},
+    {"out_of_view", "/out_of_view"},
     {"force_x", "/force/0"},
     {"force_y", "/force/1"},
     {"force_z", "/force/2"},
@@ -36,6 +39,7 @@ constexpr CsvColumn kResult[] = {
     {"measure", "/measure"},
     {"level_reason", "/level_reason"},
     {"bodies", "/bodies"},
+    {"collides", "/collides"},
 };
 
 constexpr CsvColumn kCoupling[] = {

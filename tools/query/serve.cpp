@@ -146,8 +146,10 @@ class Server {
     const Result result = query_->run(scene_->scene(), pose, 0, solids);
     scene_->see(pose, 0, result);
     seconds_.push_back(query_->seconds());
-    return result_line(seconds_.size() - 1, id, result, query_->level(), setup_.options.measure,
-                       query_->reason(), {});
+    Line line = result_line(seconds_.size() - 1, id, result, query_->level(),
+                            setup_.options.measure, query_->reason(), {});
+    setup_.collisions.answer(result, line);
+    return line;
   }
 
   void make_query(const Pose& first) {

@@ -32,9 +32,11 @@ class SeveralTools {
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools_;
       scene_.see(poses[k / tools_], tool, results[k]);
-      output.append(result_line(poses_asked_ + k / tools_, asked[k / tools_].id, results[k],
-                                query_.level(tool), setup_.options.measure, query_.reason(tool), {},
-                                tool));
+      nlohmann::ordered_json line =
+          result_line(poses_asked_ + k / tools_, asked[k / tools_].id, results[k],
+                      query_.level(tool), setup_.options.measure, query_.reason(tool), {}, tool);
+      setup_.collisions.answer(results[k], line);
+      output.append(line);
     }
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
     poses_asked_ += poses.size();

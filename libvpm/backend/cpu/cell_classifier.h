@@ -17,7 +17,9 @@ class CellClassifier {
 
   void run(ParallelRegion& region) {
     region.loop(work_.level.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t g = begin; g < end; ++g) classify_group(static_cast<std::uint32_t>(g));
+      CellClassifier part(work_);
+      for (std::size_t g = begin; g < end; ++g) part.classify_group(static_cast<std::uint32_t>(g));
+      work_.states.unseen.add_atomically(part.unseen_);
     });
     work_.list_uniform();
     region.loop(work_.states.uniform.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -35,17 +37,36 @@ class CellClassifier {
         group.end - group.begin > 1 && tells_of_parts(work_.surface, center, group.ball.reach);
     BallClass in_ball;
     if (tells) in_ball = work_.surface.classify_ball(center, group.ball.reach);
-    if (tells && in_ball.side == Side::free) {
-      work_.states.set(group.ball, ClusterClass::free);
-      return;
-    }
+    const bool is_mixed = tells && sight_of<Surface>(in_ball) == Sight::mixed;
+    if (tells && !is_mixed && in_ball.side == Side::free) return set_free(group.ball, in_ball);
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const CellCluster& part = work_.level.cluster(root);
-      if (tells && is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.reach))
+      if (tells && !is_mixed &&
+          is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.reach))
         work_.states.set(part, ClusterClass::free);
       else
         classify(root);
     }
+  }
+
+  // Notes a cluster, or a part of one, that is free, and adds what of it was not seen.
+  void set_free(const CellCluster& part, const BallClass& in_ball) {
+    work_.states.set(part, ClusterClass::free);
+    const Sight sight = sight_of<Surface>(in_ball);
+    if (sight == Sight::mixed) {
+      for (std::uint32_t i = part.begin; i < part.end; ++i) add_free_cell(i);
+    } else if (sight != Sight::seen) {
+      unseen_.add(work_.level.weight(part.begin, part.end), sight);
+    }
+  }
+  // Adds what was not seen of a free cell, by its centroid or those of its blocks.
+  void add_free_cell(std::uint32_t i) {
+    const CellView cell = work_.level.cell(i);
+    const CellMeasure measure = work_.measure_of(cell);
+    if (is_compact(cell.reach, work_.tool_radius.length))
+      return measure.add_free(work_.level.mass(i), Sight::mixed, unseen_);
+    for (std::uint32_t b = cell.begin; b < cell.end; ++b)
+      measure.add_free(cell.masses[b], Sight::mixed, unseen_);
   }
 
   void classify(std::uint32_t root) {
@@ -68,6 +89,8 @@ class CellClassifier {
     }
     if (found == ClusterClass::uniform)
       work_.states.set_uniform(whole);
+    else if (found == ClusterClass::free)
+      set_free(whole, in_ball);
     else
       work_.states.set(whole, found);
   }
@@ -96,7 +119,10 @@ class CellClassifier {
       if (const ClusterClass side =
               class_of_ball(work_.surface, in_ball, center, part.reach, work_.tool_radius.length);
           side != ClusterClass::ambiguous) {
-        work_.states.set(part, side);
+        if (side == ClusterClass::free)
+          set_free(part, in_ball);
+        else
+          work_.states.set(part, side);
         node = next;
         continue;
       }
@@ -112,9 +138,15 @@ class CellClassifier {
     const Vec3 center = work_.to_surface * view.center;
     const BallClass in_ball = work_.surface.classify_ball(center, view.reach);
     const Side side = side_of(work_.surface, in_ball, center, view.reach);
-    if (side != Side::ambiguous) return work_.states.set(i, side);
-    work_.states.results[i] = work_.measure_of(view).run(
+    if (side != Side::ambiguous) {
+      work_.states.set(i, side);
+      if (side == Side::free && sight_of<Surface>(in_ball) != Sight::seen) add_free_cell(i);
+      return;
+    }
+    CellResult& result = work_.states.results[i];
+    result = work_.measure_of(view).run(
         samples, work_.states.far.data() + work_.level.first_piece(i), in_ball.point);
+    unseen_.add(result.unseen);
     take_result(i, FloodState::unknown);
   }
 
@@ -177,6 +209,7 @@ class CellClassifier {
   }
 
   PoseWork<Surface> work_;
+  UnseenSum unseen_;  // of what this object has classified
 };
 
 }  // namespace vpm

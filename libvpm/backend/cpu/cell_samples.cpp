@@ -65,11 +65,11 @@ std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const FourSamples four = sample_at(surface, x);
-    const Mask4 reached =
-        four.known & (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
-    if (!any(reached)) continue;
+    const Mask4 wanted = negated(four.known) |
+                         (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
+    if (!any(wanted)) continue;
     for (int k = 0; k < kFour && first + k < count; ++k) {
-      if (reached[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
+      if (wanted[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
     }
   }
   return found;

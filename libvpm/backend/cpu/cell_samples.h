@@ -27,8 +27,9 @@ struct SurfaceOfSample {
 void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]);
 
-// Samples the surface for those tool samples that it reaches: whose distance is less than their
-// radius. Writes them in order to `on_surface_at` and returns their number.
+// Samples the surface for those tool samples that it reaches, whose distance is less than their
+// radius, and those where none is known. Writes them in order to `on_surface_at` and returns their
+// number.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
 
@@ -102,8 +103,8 @@ class PiecesTogether {
   void add(const ToolPiece& piece) { pieces_[count_++] = piece; }
   bool is_full() const { return count_ == kAtOnce; }
 
-  // Samples the pieces that were added, in order, and pushes those for which takes(k, sampled) is
-  // true. Calls take(k, sum) for these. Empties the list.
+  // Samples the pieces that were added, in order, and pushes those for which
+  // takes(piece, k, sampled) is true. Calls take(k, sum) for these. Empties the list.
   template <class Takes, class Take>
   void push(const Measure& measure, const Takes& takes, const Take& take) {
     if (count_ == 0) return;
@@ -113,7 +114,7 @@ class PiecesTogether {
     sample_places(measure.surface(), {places, count_}, at);
     std::uint32_t taken[kAtOnce], found = 0;
     for (std::uint32_t k = 0; k < count_; ++k) {
-      if (!takes(k, measure.sample_of(pieces_[k], at[k].x, at[k].on_surface))) continue;
+      if (!takes(pieces_[k], k, measure.sample_of(pieces_[k], at[k].x, at[k].on_surface))) continue;
       taken[found] = k;
       searched[found++] = at[k];
     }
@@ -136,12 +137,16 @@ class PiecesTogether {
 // Does what CellMeasure::add_far() does, several pieces together.
 template <class Surface, class Supports>
 void add_far_together(const CellMeasure<Surface>& measure, std::span<const PieceIndex> pieces,
-                      const Supports& supports, ToolSum& sum) {
+                      const Supports& supports, ToolSum& sum, UnseenSum& unseen) {
   PiecesTogether<Surface> together;
   const auto push = [&] {
     together.push(
         measure,
-        [&](std::uint32_t, const auto& far) { return supports(far.x, far.on_surface.foot); },
+        [&](const ToolPiece& piece, std::uint32_t, const auto& far) {
+          if (!supports(far.x, far.on_surface.foot)) return false;
+          unseen.remove_occluded(piece.weight);
+          return true;
+        },
         [&](std::uint32_t, const ToolSum& part) { sum.add(part); });
   };
   for (const PieceIndex& far : pieces) {
@@ -189,8 +194,8 @@ class SamplesTogether {
 
   template <class Measure, class Supports>
   static void add_far(const Measure& measure, std::span<const PieceIndex> pieces,
-                      const Supports& supports, ToolSum& sum) {
-    add_far_together(measure, pieces, supports, sum);
+                      const Supports& supports, ToolSum& sum, UnseenSum& unseen) {
+    add_far_together(measure, pieces, supports, sum, unseen);
   }
 
  private:

@@ -124,6 +124,7 @@ struct CellStates {
   std::vector<std::uint32_t> cut;      // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
   std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
+  UnseenSum unseen;                 // of the pose, over all cells
   // Keeps as many parts as were ever used; the first `part_count` are in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;

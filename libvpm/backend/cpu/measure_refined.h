@@ -42,6 +42,7 @@ class RefinedMeasure {
     PoseMemory* const memory = memory_of(place);
     const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
     const PoseWork<Surface> work{tool_radius_, level_, surface, to_surface, cells_};
+    cells_.unseen = {};
     ParallelRegion region;
     CellClassifier(work).run(region);
     CutCells cut(tool_, level_, to_surface, cells_);
@@ -51,6 +52,7 @@ class RefinedMeasure {
     if (memory != nullptr && cut.are_none()) inside.run_from(*memory, to_world);
     result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
     result.inside = add_up(work, inside, region, result.sum);
+    if constexpr (TellsSight<Surface>) result.unseen = cells_.unseen;
     if (memory == nullptr) return result;
     if (result.boundary + result.inside > 0)
       remember(work, to_world, inside, *memory);
@@ -87,8 +89,11 @@ class RefinedMeasure {
     std::atomic<std::uint32_t> all{0};
     region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
       ToolSum of_all;
-      const std::uint32_t count = add_up(work, inside, first_row(begin), first_row(end), of_all);
+      UnseenSum unseen;
+      const std::uint32_t count =
+          add_up(work, inside, first_row(begin), first_row(end), of_all, unseen);
       sum.add_atomically(of_all);
+      cells_.unseen.add_atomically(unseen);
       if (count > 0) all.fetch_add(count, std::memory_order_relaxed);
     });
     return all;
@@ -97,15 +102,15 @@ class RefinedMeasure {
   // Adds those in rows [begin, end).
   template <class Surface>
   std::uint32_t add_up(const PoseWork<Surface>& work, const InsideOf<Surface>& inside,
-                       std::uint32_t begin, std::uint32_t end, ToolSum& sum) {
+                       std::uint32_t begin, std::uint32_t end, ToolSum& sum, UnseenSum& unseen) {
     std::uint32_t last_cut = kNoRow, count = 0;
-    WholeCells whole(work, inside, sum);
+    WholeCells whole(work, inside, sum, unseen);
     for_rows_in(CellClass::cut, cells_.cells, begin, end,
                 [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
     for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
       if (cells_.cells[i] != CellClass::uniform && cells_.cells[i] != CellClass::partial)
         return whole.add(i);
-      const ToolSum part = sum_of(work, inside, i, last_cut);
+      const ToolSum part = sum_of(work, inside, i, last_cut, unseen);
       sum.add(part);
       if (counts(part))
         ++count;
@@ -115,10 +120,10 @@ class RefinedMeasure {
     return count + whole.finish();
   }
 
-  // Returns the sum of a uniform or partial cell.
+  // Returns the sum of a uniform or partial cell; takes what is supported from `unseen`.
   template <class Surface>
   ToolSum sum_of(const PoseWork<Surface>& work, const InsideOf<Surface>& inside, std::uint32_t row,
-                 std::uint32_t& last_cut) const {
+                 std::uint32_t& last_cut, UnseenSum& unseen) const {
     ToolSum sum;
     if (cells_.cells[row] == CellClass::uniform) {
       add_whole(tool_radius_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
@@ -130,7 +135,7 @@ class RefinedMeasure {
     auto support = inside.support(row, last_cut);
     add_far_together(
         work.measure_of(level_.cell(row)), {far, cells_.results[row].far_count},
-        [&](Vec3 x, Vec3 foot) { return support(x, foot); }, sum);
+        [&](Vec3 x, Vec3 foot) { return support(x, foot); }, sum, unseen);
     return sum;
   }
 

@@ -28,6 +28,7 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
                          block_masses.begin() + level.block_begin[sphere + 1]);
     add_cell(tool, level, sphere);
   }
+  add_weights(tool.radius);
   add_graph(level.graph);
 }
 
@@ -78,6 +79,20 @@ void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint
   }
   cell.end = static_cast<std::uint32_t>(blocks_.size());
   cells_.push_back(cell);
+}
+
+void SpatialLevel::add_weights(double tool_radius) {
+  ToolSum::Sum all;
+  weights_.push_back(all);
+  for (std::uint32_t row = 0; row < size(); ++row) {
+    const Cell& cell = cells_[row];
+    if (is_compact(cell.reach, tool_radius)) {
+      all.add(masses_[row].weight);
+    } else {
+      for (std::uint32_t b = cell.begin; b < cell.end; ++b) all.add(block_masses_[b].weight);
+    }
+    weights_.push_back(all);
+  }
 }
 
 void SpatialLevel::add_graph(const SphereGraph& graph) {

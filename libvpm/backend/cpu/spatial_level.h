@@ -42,6 +42,11 @@ class SpatialLevel {
   }
   std::size_t most_pieces() const { return samples_.size() + blocks_.size(); }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
+  // Returns the volume of rows [begin, end), in parts of the tool's, with the bits of the sum over
+  // the parts that stand for them (WholePart).
+  ToolSum::Sum weight(std::uint32_t begin, std::uint32_t end) const {
+    return {weights_[end].value - weights_[begin].value};
+  }
   std::span<const std::uint32_t> neighbors(std::uint32_t row) const {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
   }
@@ -62,10 +67,12 @@ class SpatialLevel {
   void add_groups(const ToolModel& tool, const Level& level);
   void add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
+  void add_weights(double tool_radius);
 
   std::vector<std::uint32_t> spheres_;
   std::vector<Cell> cells_;
   std::vector<BlockMass> masses_;
+  std::vector<ToolSum::Sum> weights_;  // of the rows before each row, and of all
   std::vector<CellBlock> blocks_;
   std::vector<BlockMass> block_masses_;
   std::vector<CellSample> samples_;

@@ -14,9 +14,13 @@ namespace vpm {
 template <class Surface, class Inside>
 class WholeCells {
  public:
-  // Adds to `sum`.
-  WholeCells(const PoseWork<Surface>& work, const Inside& inside, ToolSum& sum)
-      : work_(work), inside_(inside), measure_(work.measure_of(work.level.cell(0))), sum_(sum) {}
+  // Adds to `sum`, and to `unseen` what does not count.
+  WholeCells(const PoseWork<Surface>& work, const Inside& inside, ToolSum& sum, UnseenSum& unseen)
+      : work_(work),
+        inside_(inside),
+        measure_(work.measure_of(work.level.cell(0))),
+        sum_(sum),
+        unseen_(unseen) {}
 
   void add(std::uint32_t row) {
     const CellView cell = work_.level.cell(row);
@@ -47,8 +51,10 @@ class WholeCells {
     if (pieces_.is_full()) push();
   }
   void push() {
-    const auto takes = [&](std::uint32_t k, const auto& sampled) {
-      return sampled.is_inside && (!sampled.is_far || supports(origins_[k].row, sampled));
+    const auto takes = [&](const ToolPiece& piece, std::uint32_t k, const auto& sampled) {
+      if (sampled.is_inside && (!sampled.is_far || supports(origins_[k].row, sampled))) return true;
+      measure_.add_unseen(piece, sampled, unseen_);
+      return false;
     };
     pieces_.push(measure_, takes, [&](std::uint32_t k, const ToolSum& part) {
       sum_.add(part);
@@ -75,6 +81,7 @@ class WholeCells {
   const Inside& inside_;
   CellMeasure<Surface> measure_;  // serves all cells: their pieces name samples of the level
   ToolSum& sum_;
+  UnseenSum& unseen_;
   PiecesTogether<Surface> pieces_;
   Origin origins_[kAtOnce];  // of the pieces
   std::uint32_t size_ = 0, count_ = 0;

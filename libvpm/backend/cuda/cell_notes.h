@@ -50,6 +50,7 @@ struct ClippedBlock {
 struct FarPiece {
   Vec3 at, foot;  // the piece and the foot of its surface sample, surface frame, m
   ToolSum sum;
+  ToolSum::Sum weight;  // volume of the piece, which is unseen unless a plane supports it
   std::uint32_t cell = 0;
 };
 
@@ -86,15 +87,16 @@ struct RefinedSpace {
   PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
-// Holds the lengths of a query's lists; all are 0 at its start.
+// Holds the lengths of a query's lists, and what of the tool was not seen; all are 0 at its start.
 struct RefinedCounters {
   unsigned hidden = 0;  // cells that another surface may hide
   unsigned far = 0;     // FarPieces
   unsigned cut = 0;     // cut cells; 0 until CutCells::list()
+  UnseenSum unseen;
 };
 
 // Counts a cell as boundary or inside if the bits just added to its word say so.
-__device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawResult& result) {
+__device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, ThreadResult& result) {
   const auto is_inside = [](std::uint32_t word) {
     return (word & cell_bit::counted) != 0 && (word & cell_bit::cut) == 0 ? 1U : 0U;
   };
@@ -111,7 +113,7 @@ __device__ inline unsigned read(const unsigned& counter) {
 __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
   __shared__ RefinedCounters found;
   __syncthreads();
-  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0};
+  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0, {}};
   __syncthreads();
   return found;
 }
@@ -126,9 +128,40 @@ struct PoseWork {
   const CellNotes& notes;  // the pose's notes in `space`
   RefinedCounters& counters;
   BlockRange part;
+  UnseenSum& unseen;  // in shared memory: of the threads of a block, or of a warp
 
   __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
     return {surface, to_surface, level.tool_radius, view};
+  }
+
+  // Adds to `unseen`; many threads may do so at once.
+  __device__ void add_unseen(const UnseenSum& found) const {
+    if constexpr (TellsSight<Surface>) add_atomically(found, unseen);
+  }
+  // Adds a piece that was sampled, if it does not count.
+  __device__ void add_unseen(const CellMeasure<Surface>& measure, const ToolPiece& piece,
+                             const typename CellMeasure<Surface>::PieceSample& sampled) const {
+    UnseenSum found;
+    measure.add_unseen(piece, sampled, found);
+    add_unseen(found);
+  }
+  // Adds what stands for a task on the free side of the surface, by the sight of its cell's ball,
+  // or a block.
+  __device__ void add_free(const BlockTask& task, Sight of_ball) const {
+    const WholePart whole = whole_part_of(task.flags);
+    if (whole == WholePart::cell) add_free(level.cell_masses[task.cell], of_ball);
+    if (whole == WholePart::block) add_free(level.block_masses[task.block], of_ball);
+  }
+  __device__ void add_free(const BlockMass& mass, Sight of_ball) const {
+    UnseenSum found;
+    measure_of({}).add_free(mass, of_ball, found);
+    add_unseen(found);
+  }
+  // Adds the tasks of a group that is wholly free.
+  __device__ void add_free(const TaskGroup& group, Sight of_ball) const {
+    UnseenSum found;
+    found.add(group.weight, of_ball);
+    add_unseen(found);
   }
 
   // Adds a piece that is inside or cut; lists a far one. `normal` is the way out of an uncut one.
@@ -146,6 +179,7 @@ struct PoseWork {
     far.at = sampled.x;
     far.foot = sampled.on_surface.foot;
     far.sum = sum;
+    far.weight = UnseenSum::rounded(piece.weight);
     far.cell = cell;
   }
 };
@@ -270,7 +304,7 @@ class CutCells {
   }
 
   // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
-  // add(cell, sum).
+  // add(piece).
   template <class MayCount, class Add>
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
                                        const Add& add) const {
@@ -284,7 +318,7 @@ class CutCells {
       const std::uint32_t by = cut ? i : nearest_to(warp, i);
       if (by < level_.count && warp.leads() &&
           at(by).supports(far.at, far.foot, level_.tool_radius.length))
-        add(i, far.sum);
+        add(far);
     }
   }
 
@@ -319,14 +353,14 @@ class ImageSums {
   __device__ void note(const BlockTask& task, const ContactPlane& found) const {
     if (found.count > 0) add_atomically(found, notes_.planes[task.cell]);
   }
-  __device__ RawResult found() {
+  __device__ ThreadResult found() {
     count_cell(word_before_, bits_added_, found_);
     return found_;
   }
 
  private:
   const CellNotes& notes_;
-  RawResult found_;
+  ThreadResult found_;
   std::uint32_t word_before_ = 0, bits_added_ = 0;  // word of the noted cell
 };
 

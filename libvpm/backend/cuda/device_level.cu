@@ -14,6 +14,17 @@ struct GroupedTasks {
   std::vector<TaskGroup> groups;
 };
 
+// Returns the volume that tasks stand for, with the bits of the sum over them.
+ToolSum::Sum weight_of(std::span<const WarpTask> tasks) {
+  ToolSum::Sum all;
+  for (const WarpTask& task : tasks) {
+    const WholePart whole = whole_part_of(task.flags);
+    if (whole == WholePart::cell) all.add(task.cell_mass.weight);
+    if (whole == WholePart::block) all.add(task.block_mass.weight);
+  }
+  return all;
+}
+
 // Adds block tasks of a cluster in groups of `at_once`.
 template <class SomeTask>
 void add_groups(const CellCluster& cluster, std::span<const WarpTask> some, std::size_t at_once,
@@ -22,8 +33,10 @@ void add_groups(const CellCluster& cluster, std::span<const WarpTask> some, std:
     const std::span<const WarpTask> these = some.first(std::min(at_once, some.size()));
     const auto begin = static_cast<std::uint32_t>(out.tasks.size());
     out.tasks.insert(out.tasks.end(), these.begin(), these.end());
-    out.groups.push_back(
-        {{cluster.center, cluster.reach}, begin, begin + static_cast<std::uint32_t>(these.size())});
+    out.groups.push_back({{cluster.center, cluster.reach},
+                          begin,
+                          begin + static_cast<std::uint32_t>(these.size()),
+                          weight_of(these)});
   }
 }
 // Adds block tasks of a cluster in groups of `at_once`, and fills the last group up with tasks
@@ -68,7 +81,7 @@ class LevelTasks {
     const auto before = static_cast<std::uint32_t>(all.tasks.size());
     all.tasks.insert(all.tasks.end(), narrow.tasks.begin(), narrow.tasks.end());
     for (const TaskGroup& group : narrow.groups)
-      all.groups.push_back({group.ball, before + group.begin, before + group.end});
+      all.groups.push_back({group.ball, before + group.begin, before + group.end, group.weight});
     return all;
   }
 

@@ -40,7 +40,7 @@ class GroupMeasure {
   using Shared = MeasureShared;  // memory of a block
 
   // Adds to `found`, this thread's sums, which are 0 before.
-  __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, RawResult& found)
+  __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, ThreadResult& found)
       : work_(work), shared_(shared), tasks_(work, shared.lists, found) {}
 
   // Classifies the task groups of the block's part. Call from all threads. kApart keeps the classes
@@ -48,6 +48,7 @@ class GroupMeasure {
   template <bool kApart = false>
   __device__ void run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
+    if (threadIdx.x == 0) work_.unseen = {};
     clear_seen();
     tasks_.clear();
     const Subwarp lanes(lanes_of_group());
@@ -72,6 +73,10 @@ class GroupMeasure {
       __syncthreads();
     }
     tasks_.finish();
+    if constexpr (TellsSight<Surface>) {
+      __syncthreads();
+      if (threadIdx.x == 0) add_atomically(work_.unseen, work_.counters.unseen);
+    }
   }
 
  private:
@@ -104,10 +109,14 @@ class GroupMeasure {
     const TaskGroup& group = work_.level.task_groups[c];
     const Vec3 at = work_.to_surface * group.ball.center;
     const auto in_ball = work_.surface.classify_ball(at, group.ball.radius);
-    if (in_ball.side == Side::free) return;
+    const Sight sight = sight_of<Surface>(in_ball);
+    if (in_ball.side == Side::free && sight != Sight::mixed) {
+      if (lanes.leads()) work_.add_free(group, sight);
+      return;
+    }
     ClipPlane plane;
     const ClusterClass seen = classify_cluster(group.ball, in_ball, at, lanes, plane);
-    if (!lanes.leads() || seen == ClusterClass::free) return;
+    if (!lanes.leads() || (seen == ClusterClass::free && sight != Sight::mixed)) return;
     if (seen == ClusterClass::uniform) {
       shared_.uniform_groups[atomicAdd(&shared_.uniform_count, 1U)] = c;
       return;
@@ -222,9 +231,11 @@ class GroupMeasure {
     const Vec3 at = work_.to_surface * ball.center;
     decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
     Side own = in_ball.side;
+    Sight sight = Sight::mixed;  // of this lane's ball: that of a free cluster was mixed
     if (seen.side() == Side::ambiguous) {
       if (lanes.lane < BlockTask::kBalls) in_ball = work_.surface.classify_ball(at, ball.radius);
       own = in_ball.side;
+      sight = sight_of<Surface>(in_ball);
       if (is_cell_free(lanes, in_ball, at, ball.radius)) own = Side::free;
     }
     const auto of_cell =
@@ -252,6 +263,7 @@ class GroupMeasure {
     if (!active) return;
     if (lanes.lane == BlockTask::of_cell && head)
       note_cell(task, word_of_cell(side, whole, hidden), gap);
+    if (lanes.lane == BlockTask::of_cell && side == Side::free) work_.add_free(task, sight);
     if (lanes.lane != BlockTask::of_block) return;
     if (side == Side::ambiguous)
       add_ambiguous(task, in_ball, at, ball.radius, on_surface);
@@ -360,6 +372,8 @@ class GroupMeasure {
         tangent);
     if (found == BlockClass::cut)
       tasks_.add_clipped(task, {tangent, work_.to_surface});
+    else if (found == BlockClass::free)
+      work_.add_free(work_.level.block_masses[task.block], sight_of<Surface>(in_ball));
     else
       list_block(task, found);
   }
@@ -373,9 +387,8 @@ class GroupMeasure {
       tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
   }
 
-  // Lists a block of an ambiguous cell.
+  // Lists a block of an ambiguous cell, which no plane cuts and which is not free.
   __device__ void list_block(const BlockTask& task, BlockClass found) {
-    if (found == BlockClass::free) return;
     if (found == BlockClass::uncut) {
       tasks_.add(TaskLists::pieces, {task.cell, Task::block, task.block, 1});
       return;

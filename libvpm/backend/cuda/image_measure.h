@@ -21,6 +21,7 @@ struct alignas(16) ImageShared {
   struct OfTask {
     Side cell = Side::free;
     BlockClass block = BlockClass::free;
+    Sight sight_of_cell = Sight::seen, sight_of_block = Sight::seen;
     bool asks_pixels = false;  // its pixels may show the cell to be free
     bool may_be_free = false;
     ClipPlane plane;        // set for a cut block
@@ -34,6 +35,7 @@ struct alignas(16) ImageShared {
   SurfaceSample on_surface, around[kPlacesAround];
   Vec3 normal;  // along which a uniform cluster is pushed
   OfTask tasks[TaskGroup::kTasks];
+  UnseenSum unseen;  // of the group
 };
 
 // Samples the surface at the four places about a cluster's middle, each by one lane of a warp. The
@@ -61,12 +63,13 @@ struct SampleByWarp {
 template <class Found>
 class ImageTaskGroup {
  public:
-  // Takes the number of `lanes` per block task.
-  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, const TaskBall& cluster,
+  // Takes the number of `lanes` per block task. `work.unseen` is that of the warp.
+  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, const TaskGroup& group,
                             const WarpTask* tasks, unsigned lanes, ImageShared& shared,
                             ImageSums& sums)
       : work_(work),
-        cluster_(cluster),
+        group_(group),
+        cluster_(group.ball),
         lanes_(lanes),
         lane_(threadIdx.x % lanes),
         task_(tasks[threadIdx.x % 32 / lanes]),
@@ -78,13 +81,12 @@ class ImageTaskGroup {
         sums_(sums) {}
 
   __device__ void measure() {
+    if (threadIdx.x % 32 == 0) shared_.unseen = {};
     classify_balls();
-    if (shared_.in_ball.side == Side::free) return;
-    Found found;
-    const Counts counts = classify();
-    measure_pieces(counts, found);
-    measure_by_plane(counts, found);
-    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(task_, found);
+    measure_tasks();
+    __syncwarp();
+    if (!kFindsPlanes && threadIdx.x % 32 == 0)
+      add_atomically(shared_.unseen, work_.counters.unseen);
   }
 
  private:
@@ -106,6 +108,27 @@ class ImageTaskGroup {
     whole_block,
     by_samples,  // sample by sample
   };
+
+  __device__ void measure_tasks() {
+    if (shared_.in_ball.side == Side::free) return add_free_group();
+    Found found;
+    const Counts counts = classify();
+    measure_pieces(counts, found);
+    measure_by_plane(counts, found);
+    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(task_, found);
+  }
+  // Adds what was not seen of a group that is wholly free.
+  __device__ void add_free_group() {
+    const Sight sight = DepthSurface::sight_of(shared_.in_ball);
+    if (sight == Sight::mixed)
+      add_free_task(sight);
+    else if (threadIdx.x % 32 == 0)
+      work_.add_free(group_, sight);
+  }
+  // Adds what was not seen of a task whose cell is free, by the sight of that or of the group.
+  __device__ void add_free_task(Sight sight) {
+    if (lane_ == 0) work_.add_free(task_, sight);
+  }
 
   __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
   __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
@@ -145,6 +168,7 @@ class ImageTaskGroup {
     }
     if (lane_ == kOfCell) {
       seen_.cell = in_ball_.side;
+      seen_.sight_of_cell = DepthSurface::sight_of(in_ball_);
       seen_.farthest = middle_.z + radius_;
       seen_.asks_pixels = work_.surface.may_be_seen_past(in_ball_, seen_.farthest);
       seen_.pixels = in_ball_.pixels;
@@ -224,6 +248,7 @@ class ImageTaskGroup {
         plane_ = seen_.plane;
         switch (seen_.block) {
           case BlockClass::free:
+            if (lane_ == 0) work_.add_free(task_.block_mass, seen_.sight_of_block);
             return Counts::not_at_all;
           case BlockClass::uncut:
             return Counts::whole_block;
@@ -235,7 +260,10 @@ class ImageTaskGroup {
       }
       if (side == Side::ambiguous) return Counts::not_at_all;
     }
-    if (side == Side::free) return Counts::not_at_all;
+    if (side == Side::free) {
+      add_free_task(seen_.sight_of_cell);
+      return Counts::not_at_all;
+    }
     const WholePart part = whole_part_of(flags_);
     return part == WholePart::cell    ? Counts::whole_cell
            : part == WholePart::block ? Counts::whole_block
@@ -258,6 +286,7 @@ class ImageTaskGroup {
     seen_.block = class_of_block(
         work_.surface, in_ball_, middle_, radius_, work_.level.tool_radius,
         [&] { return on_surface_; }, tangent);
+    seen_.sight_of_block = DepthSurface::sight_of(in_ball_);
     if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
   }
 
@@ -343,6 +372,7 @@ class ImageTaskGroup {
     Vec3 normal;
     if (searches) normal = search.normal();
     normal = Warp::from(normal, leader);
+    if (exists && piece.weight > 0) work_.add_unseen(measure, piece, sampled);
     if (is_inside && piece.weight > 0) add_piece(measure, piece, sampled, normal, found);
     return normal;
   }
@@ -400,6 +430,7 @@ class ImageTaskGroup {
   }
 
   const PoseWork<DepthSurface>& work_;
+  const TaskGroup& group_;
   const TaskBall& cluster_;
   unsigned lanes_, lane_;
   const WarpTask& task_;
@@ -432,8 +463,12 @@ class ImageMeasure {
   __device__ static bool is_for(const LevelView& level, BlockRange part) {
     return level.of_warps.count > 0 && level.of_warps.count <= part.parts * (blockDim.x / 32);
   }
+  // Returns where the warp of this thread adds what was not seen.
+  __device__ static UnseenSum& unseen_of(Shared& shared) {
+    return reinterpret_cast<ImageShared*>(shared.warps[threadIdx.x / 32])->unseen;
+  }
   // Returns the sums of this thread.
-  __device__ RawResult run() {
+  __device__ ThreadResult run() {
     measure_group<TaskSums>();
     return sums_.found();
   }
@@ -452,7 +487,7 @@ class ImageMeasure {
     const WarpTask* const tasks = all.tasks +
                                   (is_wide ? 0 : all.wide_count * WarpTaskGroups::kWideTasks) +
                                   (is_wide ? c : c - all.wide_count) * at_once;
-    ImageTaskGroup<Found>(work_, all.groups[c].ball, tasks, 32 / at_once, shared_, sums_).measure();
+    ImageTaskGroup<Found>(work_, all.groups[c], tasks, 32 / at_once, shared_, sums_).measure();
   }
 
   const PoseWork<DepthSurface>& work_;

@@ -107,18 +107,20 @@ class CameraVisibility {
   // True if the first step has left `far` pieces.
   __device__ static bool has_more(unsigned far) { return far > 0; }
   // Returns what this thread adds to the first step's result. Call from all threads of the team.
-  __device__ RawResult run() {
-    RawResult result;
+  __device__ ThreadResult run() {
+    ThreadResult result;
     const unsigned far = read_for_block(counters_).far;
     if (far > 0) {
       cut_.list();
       team_.sync();
       cut_.add_far(
           far, [](std::uint32_t) { return true; },
-          [&](std::uint32_t i, const ToolSum& sum) {
-            result.sum.add(sum);
-            if (counts(sum))
-              count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
+          [&](const FarPiece& far_piece) {
+            result.sum.add(far_piece.sum);
+            add_term(counters_.unseen.unseen.value, -far_piece.weight.value);
+            if (counts(far_piece.sum))
+              count_cell(atomicOr(&notes_.words[far_piece.cell], cell_bit::counted),
+                         cell_bit::counted, result);
           });
     }
     return result;
@@ -183,7 +185,7 @@ class Flood {
   // True always: the flood comes after the first step.
   __device__ static bool has_more(unsigned) { return true; }
   // Returns this thread's part of the result. Call from all threads of the team.
-  __device__ RawResult run() {
+  __device__ ThreadResult run() {
     const RefinedCounters found = read_for_block(counters_);
     if (found.hidden > 0 || found.far > 0) {
       cut_.list();
@@ -201,7 +203,7 @@ class Flood {
     if (found.far > 0) {
       cut_.add_far(
           found.far, [&](std::uint32_t i) { return is_inside(i, words_[i]); },
-          [&](std::uint32_t i, const ToolSum& sum) { add_atomically(sum, notes_.sums[i]); });
+          [&](const FarPiece& piece) { add_atomically(piece.sum, notes_.sums[piece.cell]); });
       team_.sync();
     }
     return add_up_cells();
@@ -367,8 +369,8 @@ class Flood {
   }
 
   // Returns this thread's part of the sum over all cells that count.
-  __device__ RawResult add_up_cells() {
-    RawResult result;
+  __device__ ThreadResult add_up_cells() {
+    ThreadResult result;
     const auto add = [&](std::uint32_t i, std::uint32_t word) {
       if ((word & cell_bit::cut) != 0 || may_be_inside(word)) add_cell(i, word, result);
     };
@@ -383,7 +385,7 @@ class Flood {
 
   // Adds a cell that counts: a cut one, or one with a volume that the flood has reached. The flood
   // also passes cells of which nothing counts.
-  __device__ void add_cell(std::uint32_t i, std::uint32_t word, RawResult& result) const {
+  __device__ void add_cell(std::uint32_t i, std::uint32_t word, ThreadResult& result) const {
     const bool cut = (word & cell_bit::cut) != 0;
     const ToolSum sum = notes_.sums[i];
     if (!cut && !(is_inside(i, word) && counts(sum))) return;

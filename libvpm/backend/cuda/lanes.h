@@ -66,6 +66,12 @@ __device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
 }
 
+// Adds what was not seen, which mostly is nothing.
+__device__ inline void add_atomically(const UnseenSum& part, UnseenSum& sum) {
+  if (part.unseen.value != 0) add_term(sum.unseen.value, part.unseen.value);
+  if (part.out_of_view.value != 0) add_term(sum.out_of_view.value, part.out_of_view.value);
+}
+
 template <class Sum>
 __device__ void add_atomically(Sum part, Sum& sum) {
   const std::int64_t* const terms = terms_of(part);
@@ -76,7 +82,7 @@ __device__ void add_atomically(Sum part, Sum& sum) {
 }
 
 // Adds a block's parts to `total`, which may lie in shared memory.
-__device__ inline void add_block(const RawResult& part, RawResult& total) {
+__device__ inline void add_block(const ThreadResult& part, RawResult& total) {
   constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
   __shared__ std::int64_t values[kMostWarps][kTerms + 1];
   const ToolSum& s = part.sum;

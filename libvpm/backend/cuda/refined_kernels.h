@@ -83,20 +83,22 @@ union BlockShared {
 
 // Runs the first step of one query by all blocks of a launch. Returns the sums of this thread.
 template <class Surface>
-__device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
-                                   unsigned turn, BlockShared<Surface>& shared) {
-  const PoseWork<Surface> work{launch.level,
-                               launch.surface,
-                               to_surface,
-                               launch.space,
-                               launch.space.notes[turn % 2],
-                               *launch.counters,
-                               {blockIdx.x, gridDim.x}};
+__device__ ThreadResult measure_cells(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
+                                      unsigned turn, BlockShared<Surface>& shared) {
+  const BlockRange part{blockIdx.x, gridDim.x};
+  const auto work_with = [&](UnseenSum& unseen) {
+    return PoseWork<Surface>{
+        launch.level,     launch.surface, to_surface, launch.space, launch.space.notes[turn % 2],
+        *launch.counters, part,           unseen};
+  };
   if constexpr (kHasImageSchedule<Surface>) {
-    if (ImageMeasure::is_for(launch.level, work.part))
+    if (ImageMeasure::is_for(launch.level, part)) {
+      const PoseWork<Surface> work = work_with(ImageMeasure::unseen_of(shared.image));
       return ImageMeasure(work, shared.image).run();
+    }
   }
-  RawResult found;
+  const PoseWork<Surface> work = work_with(shared.measure.unseen());
+  ThreadResult found;
   GroupMeasure<Surface>(work, shared.measure, found).run();
   return found;
 }
@@ -113,7 +115,8 @@ __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& laun
                                     launch.space,
                                     launch.space.notes[turn % 2],
                                     *launch.counters,
-                                    part};
+                                    part,
+                                    ImageMeasure::unseen_of(shared.image)};
   ImageMeasure(work, shared.image).note_planes();
 }
 
@@ -144,7 +147,7 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
                 .run(),
             total);
   __syncthreads();
-  send(word_of(total), now() - met, launch.answer, sequence);
+  send(word_of(total, total.unseen), now() - met, launch.answer, sequence);
   if (threadIdx.x == 0) {
     launch.totals->done = 0;
     *launch.counters = RefinedCounters{};
@@ -159,14 +162,15 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const RawResult found = measure_cells(launch, to_surface, sequence, shared);
+  const ThreadResult found = measure_cells(launch, to_surface, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
   unsigned far = 0;
   const auto has_more = [&] { return Rest::has_more(far); };
   if (is_last) {
-    const std::uint32_t word = word_of(totals->result);  // read together with `far`
+    // Read together with `far`.
+    const std::uint32_t word = word_of(totals->result, launch.counters->unseen);
     far = read(launch.counters->far);
     if (!has_more()) send(word, now() - met, launch.answer, sequence);
   }
@@ -185,7 +189,8 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
     add_block(rest.run(), totals->result);
   }
   if (!is_last_of(totals->done, gridDim.x)) return;
-  if (has_more()) send(word_of(totals->result), now() - met, launch.answer, sequence);
+  if (has_more())
+    send(word_of(totals->result, launch.counters->unseen), now() - met, launch.answer, sequence);
   __syncthreads();
   if (threadIdx.x == 0) {
     *totals = Totals{};
@@ -213,8 +218,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ RawResult total;
   // Each thread's sums, which are seldom used, lie here and not in its registers. A query with a
   // flood has none.
-  __shared__ RawResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
-  RawResult of_flood, &found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
+  __shared__ ThreadResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
+  ThreadResult of_flood, &found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
   __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory
   if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
@@ -236,9 +241,10 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
       total = RawResult{};
     }
     __syncthreads();
-    const PoseWork<Surface> work{
-        level, launch.surface, to_surface, space, space.notes[turn % 2], counters, {}};
-    found = RawResult{};
+    const PoseWork<Surface> work{level, launch.surface,         to_surface,
+                                 space, space.notes[turn % 2],  counters,
+                                 {},    shared.measure.unseen()};
+    found = ThreadResult{};
     // Among points groups are classified apart: so batches take 5 % less time, single poses 15 %
     // more.
     constexpr bool kApart = !Surface::kTellsInside;
@@ -250,7 +256,10 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
                                       shared.inside);
     if (inside.has_more(counters.far)) add_block(inside.run(), total);
     __syncthreads();
-    if (threadIdx.x == 0) results[p] = total;
+    if (threadIdx.x == 0) {
+      total.unseen = counters.unseen;
+      results[p] = total;
+    }
   }
   clear_notes(launch.levels[tool]);  // the next launch begins with turn 0
 }

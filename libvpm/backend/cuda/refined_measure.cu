@@ -127,7 +127,7 @@ class RefinedOnDevice : public DeviceMeasure {
       batch_->order.order(jobs.subspan(begin, count), measures.size());
       const std::span<const RawResult> answers = answers_of(surface, measures);
       for (std::size_t k = 0; k < count; ++k)
-        sums[begin + batch_->order.place(k)] = sum_of(answers[k]);
+        sums[begin + batch_->order.place(k)] = sum_of<Surface>(answers[k]);
     }
   }
 
@@ -141,7 +141,7 @@ class RefinedOnDevice : public DeviceMeasure {
                   arguments, to_body, sequence_ + 1);
     const RawResult raw = wait_for(*answer_.host(), ++sequence_, stream_.get());
     flood_microseconds_ = 1e-3 * raw.flood_ns;
-    return sum_of(raw);
+    return sum_of<Surface>(raw);
   }
 
   // Returns the answers to the ordered jobs of one launch.

@@ -71,6 +71,10 @@ struct MeasureShared {
   unsigned uniform_count;
   std::uint32_t first_tasks[kMeasureThreads];  // first block task of each slot's group
   TaskLists lists;
+  // Bytes, since this lies in a union, whose members cannot have initial values.
+  alignas(UnseenSum) unsigned char unseen_bytes[sizeof(UnseenSum)];
+
+  __device__ UnseenSum& unseen() { return *reinterpret_cast<UnseenSum*>(unseen_bytes); }
 };
 
 template <class Surface>
@@ -79,7 +83,7 @@ class TaskMeasure {
   using Measure = CellMeasure<Surface>;
 
   // Adds to `found`, this thread's sums.
-  __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists, RawResult& found)
+  __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists, ThreadResult& found)
       : work_(work), lists_(lists), found_(found) {}
 
   // Empties the lists. Call from all threads of the block.
@@ -201,6 +205,7 @@ class TaskMeasure {
     Vec3 normal;
     if (is_searched(way) && first == subwarp.lane) normal = measure.closest_normal(sampled);
     if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
+    if (exists) work_.add_unseen(measure, piece, sampled);
     if (way == WayOut::none) return;
     measure.note(piece, sampled, result);
     work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
@@ -285,7 +290,7 @@ class TaskMeasure {
 
   const PoseWork<Surface>& work_;
   TaskLists& lists_;
-  RawResult& found_;
+  ThreadResult& found_;
   std::uint32_t words_before_ = 0, bits_added_ = 0;  // word of the cell noted last
 };
 

@@ -43,6 +43,7 @@ struct TaskGroup {
   static constexpr unsigned kTasks = 8;
   TaskBall ball;  // the cluster's, about the tool's centre of mass
   std::uint32_t begin = 0, end = 0;
+  ToolSum::Sum weight;  // volume that the tasks stand for (WholePart), in parts of the tool's
 };
 
 // A block task with the masses of its block and cell, which a warp loads with it.
@@ -96,15 +97,26 @@ struct LevelView {
   }
 };
 
-// Holds the result of a kernel, in the tool's axes.
+// Holds what one thread finds, in the tool's axes.
+struct ThreadResult {
+  ToolSum sum;
+  std::uint32_t boundary = 0, inside = 0;
+};
+
+// Holds the result of a kernel.
 struct RawResult {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0;
+  UnseenSum unseen;
   std::uint32_t flood_ns = 0;  // time of one pose after the boundary was known, ns
 };
 
-inline BodySum sum_of(const RawResult& raw) {
-  return {raw.sum, raw.boundary, raw.inside, std::nullopt};
+// Returns what a body with this surface gives.
+template <class Surface>
+BodySum sum_of(const RawResult& raw) {
+  BodySum sum{raw.sum, raw.boundary, raw.inside, std::nullopt, std::nullopt};
+  if (TellsSight<Surface>) sum.unseen = raw.unseen;
+  return sum;
 }
 
 }  // namespace vpm::cuda

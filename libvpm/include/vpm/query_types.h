@@ -14,10 +14,10 @@ namespace vpm {
 // noise is taken out. paper: the algorithm as printed in 2017.
 enum class Measure { refined, paper };
 
-// Says which places count that a depth image does not show, since something hides them.
-// near: those up to the tool radius behind what is seen, and those further
-// behind that the plane of the surface that cuts the tool supports. solid: all, as in a count of
-// what is behind the image.
+// Says what counts of the places that a depth image does not show. near: those at most the tool
+// radius behind what it shows, and further behind those that a surface which cuts the tool
+// supports. solid: all of them. The tool radius is the greatest distance of the tool from its
+// centre of mass.
 enum class Shadows { near, solid };
 
 struct QueryOptions {
@@ -50,6 +50,17 @@ struct Wrench {
   friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
 };
 
+// What a camera knows of the tool, as fractions of its volume. With the part that is in the solid
+// (volume_fraction) they add up to 1.
+struct Visibility {
+  double seen_free = 0;    // before the surface that the camera sees
+  double unseen = 0;       // hidden by the surface, and no part of the volume; or where nothing was
+                           // measured (holes wider than four pixels)
+  double out_of_view = 0;  // outside of the image, or behind the camera
+
+  friend constexpr bool operator==(const Visibility&, const Visibility&) = default;
+};
+
 struct Result {
   double volume = 0;           // m^3 of the tool inside the scene's solid
   double volume_fraction = 0;  // volume / volume of the tool
@@ -62,6 +73,10 @@ struct Result {
   // Of the scene's solids, if there are any: the largest Overlap::closure (vpm/solid.h), by which
   // the boundary of what the tool shares with one of them misses to be closed. At most 1e-8.
   std::optional<double> closure;
+  // What the scene's camera knows, by the refined measure; its part of the volume is that in the
+  // camera's body. Of solids alone the whole tool is seen. Nothing is told
+  // of points without a camera, nor of several cameras, which do not know of each other.
+  std::optional<Visibility> visibility;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;
 };

@@ -133,9 +133,36 @@ struct DepthSampler {
     return on_surface;
   }
 
+  // Returns what the camera sees in the direction of a place: `seen` where sample_and() knows a
+  // surface.
+  VPM_HD Sight sight_at(const Vec3& x) const {
+    const Projection<double> at = project(x);
+    if (!at.is_seen) return Sight::out_of_view;
+    const bool is_known = inverse_depth(truncated(at.u + 0.5), truncated(at.v + 0.5)) > 0;
+    return is_known ? Sight::seen : Sight::hole;
+  }
+
  private:
   // Cosine between ray and normal below which the normal does not scale a distance.
   static constexpr double kGrazing = 0.05;
+
+  // Holds where a place is in the image, in pixels; 0 where it is not.
+  template <class Real>
+  struct Projection {
+    MaskOf<Real> is_seen{};
+    Real u{}, v{};
+  };
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD Projection<RealOf<Place>> project(const Place& x) const {
+    using Real = RealOf<Place>;
+    const Real zero{}, per_depth = quotient(1, x.z);
+    const Real any_u = k.fx * (x.x * per_depth) + k.cx, any_v = k.fy * (x.y * per_depth) + k.cy;
+    const double u_end = width, v_end = height;
+    // Squares of depths below kSmallestLength would underflow.
+    const MaskOf<Real> is_seen = (x.z >= kSmallestLength) & (any_u >= -0.5) & (any_v >= -0.5) &
+                                 (any_u + 0.5 < u_end) & (any_v + 0.5 < v_end);
+    return {is_seen, is_seen ? any_u : zero, is_seen ? any_v : zero};
+  }
 
   // Describes the image in the direction of a place.
   template <class Real>
@@ -150,14 +177,9 @@ struct DepthSampler {
                                                              const Also& also) const {
     using Real = RealOf<Place>;
     using Int = IntOf<Real>;
-    const Real zero{}, per_depth = quotient(1, x.z);
-    const Real any_u = k.fx * (x.x * per_depth) + k.cx, any_v = k.fy * (x.y * per_depth) + k.cy;
-    const double u_end = width, v_end = height;
-    // Squares of depths below kSmallestLength would underflow.
-    const MaskOf<Real> is_seen = (x.z >= kSmallestLength) & (any_u >= -0.5) & (any_v >= -0.5) &
-                                 (any_u + 0.5 < u_end) & (any_v + 0.5 < v_end);
+    const auto [is_seen, u, v] = project(x);
     if (!any(is_seen)) return {};
-    const Real u = is_seen ? any_u : zero, v = is_seen ? any_v : zero;
+    const Real zero{};
     const Real from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
     const Int un = truncated(u + 0.5), vn = truncated(v + 0.5);
     const Int u0 = truncated(from_u), v0 = truncated(from_v);

@@ -34,7 +34,8 @@ struct DepthSurface : DepthSampler {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // always: projection needs no start
     bool leaves_image = true;
-    PixelRectangle pixels, tiles;  // pixels that a place in the ball may touch; pixels of the tiles
+    // Pixels that a place in the ball may touch, none where it is out of view; pixels of the tiles.
+    PixelRectangle pixels, tiles;
     InverseDepthRange range;
     float middle = 0;  // measured inverse depth of the pixel in the middle
   };
@@ -85,6 +86,7 @@ struct DepthSurface : DepthSampler {
     // True for numbers that overflowed too.
     if (!(u_high >= -0.5 && v_high >= -0.5 && u_low < width - 0.5 && v_low < height - 0.5)) {
       in_ball.side = Side::free;
+      in_ball.pixels = {};
       return in_ball;
     }
     in_ball.leaves_image =
@@ -101,6 +103,14 @@ struct DepthSurface : DepthSampler {
       in_ball.side = Side::behind;
     }
     return in_ball;
+  }
+
+  // Returns what is seen of all places in a classified ball.
+  static VPM_HD Sight sight_of(const BallClass& in_ball) {
+    if (in_ball.leaves_image) return is_empty(in_ball.pixels) ? Sight::out_of_view : Sight::mixed;
+    return in_ball.range.low > 0    ? Sight::seen
+           : in_ball.range.high > 0 ? Sight::mixed
+                                    : Sight::hole;
   }
 
   // True if the class of a ball tells about the balls in it: their pixels are among its own, unless

@@ -14,40 +14,40 @@ specks
 "volume_fraction":0.2
 hole
 "volume_fraction":0.0
-vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 half
 "volume_fraction":0.1
-vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 rows
 "volume_fraction":0.1
-vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 
 # In the part that the image does not show next to the half that it does, and half out of the camera's view.
 $ for p in 0.15,0,0.95 0.3,0,0.95; do vpm-query --tool cube.vpmg --cloud half.vpmc --pose $p,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
 "volume_fraction":0.0
 "volume_fraction":0.0
-2> vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
-2> vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 $ for p in 0.3 0.5; do vpm-query --tool cube.vpmg --cloud whole.vpmc --pose $p,0,0.95,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
 "volume_fraction":0.2
 "volume_fraction":0.1
-2> vpm-query: warning: at 1 of 1 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 
 # Nothing is said of tools that wait: before the wall, before its hole, and beside the image.
 $ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 0.7 0 0 0 1' '0.45 0 0.7 0 0 0 1' '0.7 0 0.7 0 0 0 1' '0.7 0 -0.3 0 0 0 1' > wait.txt
 $ vpm-query --tool cube.vpmg --cloud whole.vpmc --poses wait.txt -o /dev/null
 $ tail -n +2 wait.txt > free.txt; for n in hole half step; do (cat free.txt; echo '-0.3 0 0.95 0 0 0 1') | vpm-query --tool cube.vpmg --cloud $n.vpmc --poses - -o /dev/null; done
 
-# Poses are counted, of several tools too, of many every n-th; the measure as printed has its own rules.
+# Poses are named, of several tools too, of many every n-th; the measure as printed has its own rules.
 $ cat free.txt wait.txt > both.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null
-2> vpm-query: warning: at 1 of 9 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at pose 4 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 $ vpm-query --tool cube.vpmg --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null
-2> vpm-query: warning: at 2 of 18 poses of tools a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at pose 4 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 $ for k in $(seq 200); do cat wait.txt; done | vpm-query --tool cube.vpmg --cloud hole.vpmc --poses - -o /dev/null
-2> vpm-query: warning: at 100 of 500 poses looked at a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at poses 0, 10 and 98 others of those looked at a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 $ vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null --measure paper
 $ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' > device.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o /dev/null --quiet
-2> vpm-query: warning: at 11 of 11 poses a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
+2> vpm-query: warning: at poses 0, 1 and 9 others a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 
 # Points without a camera tell only of what is near them: a tool in the middle of what they enclose counts for nothing, which is said.
 $ cat > boxes.py <<< $'import itertools\nn = range(-15, 16)\nfaces = [(p, a, s) for a in range(3) for s in (-1, 1) for p in itertools.product(n, n)]\ndef rows(kept):\n    for (u, v), a, s in faces:\n        if kept(a, s):\n            at, to = [0.02 * u, 0.02 * v], [0, 0]\n            at.insert(a, 0.3 * s)\n            to.insert(a, s)\n            yield " ".join(map(str, at + to))\nfor name, kept in {"closed": lambda a, s: True, "wall": lambda a, s: (a, s) == (2, -1)}.items():\n    lines = list(rows(kept))\n    head = ["ply", "format ascii 1.0", f"element vertex {len(lines)}", *("property float " + p for p in "x y z nx ny nz".split()), "end_header"]\n    open(name + ".ply", "w").write("\\n".join(head + lines) + "\\n")'

@@ -14,6 +14,10 @@ $ echo '{"shadows": "solid"}' > solid.json && vpm-query --config solid.json --to
 $ for batch in 1 3; do for threads in 1 2; do vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --shadows solid --batch $batch --threads $threads | cmp - solid.jsonl; done; done
 $ mkdir frames && cp wall.png frames/0.png && vpm-query --tool cube.vpmg --frames frames --trajectory deep.txt --rate 1 --intrinsics 60,60,31.5,23.5 --shadows solid --quiet | python3 -c "import json, sys; print([json.loads(l)['volume'] for l in sys.stdin])" | cmp - <(python3 -c "import json; print([json.loads(l)['volume'] for l in open('solid.jsonl')])")
 
+# Page, header and help tell the rule in the same words.
+$ vpm-query --help > help.txt; python3 -c "import re, sys; rule = 'counts of the places that a depth image does not show. near: those at most the tool radius behind what it shows, and further behind those that a surface which cuts the tool supports. solid: all of them'; print([rule in re.sub(r'[\s/\x60]+', ' ', open(f).read()).replace(' near :', ' near:').replace(' solid :', ' solid:') for f in sys.argv[1:]])" help.txt $SOURCE/tools/query/README.md $SOURCE/libvpm/include/vpm/query_types.h
+[True, True, True]
+
 # Points without a camera hide nothing, and the measure as printed ignores the option.
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud points.vpmc --poses deep.txt --shadows solid

@@ -1,0 +1,191 @@
+// What a camera knows of a tool: seen free, unseen and out of view, beside the volume.
+
+#include <gtest/gtest.h>
+#include <vpm/collides.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/query/tool_query.h"
+#include "libvpm/synthetic/render.h"
+#include "tests/query/expect_equal.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::generic_rotation;
+using testing::lattice_cube;
+
+constexpr double kEdge = 0.2;
+
+double sum_of(const Result& r) {
+  return r.volume_fraction + r.visibility->seen_free + r.visibility->unseen +
+         r.visibility->out_of_view;
+}
+
+// Counts places of the tool by what is known of them.
+struct Known {
+  double volume = 0, seen_free = 0, unseen = 0, out_of_view = 0;
+};
+
+// Returns what is known of places before testing::wall_with_hole(). Behind the wall they count if
+// they are no further than the tool's radius, or the wall cuts the tool.
+Known known_of(const std::vector<Vec3>& places, const Camera& camera, const Pose& pose,
+               double radius, bool is_cut) {
+  const Intrinsics& k = camera.intrinsics;
+  Known known;
+  const double each = 1 / static_cast<double>(places.size());
+  for (const Vec3& place : places) {
+    const Vec3 x = pose * place;
+    const double u = k.fx * x.x / x.z + k.cx, v = k.fy * x.y / x.z + k.cy;
+    const bool in_view =
+        x.z > 0 && u >= -0.5 && v >= -0.5 && u < camera.width - 0.5 && v < camera.height - 0.5;
+    if (!in_view)
+      known.out_of_view += each;
+    else if (testing::kHoleAcross.holds(u) && testing::kHoleDown.holds(v))
+      known.unseen += each;
+    else if (x.z < 1)
+      known.seen_free += each;
+    else if (x.z < 1 + radius || is_cut)
+      known.volume += each;
+    else
+      known.unseen += each;
+  }
+  return known;
+}
+
+// The bound is that of the cells, which are a tenth of the tool wide: half a layer of them on the
+// rim of the hole or of the image may be on the wrong side.
+TEST(Visibility, IsThatOfTheToolsPlaces) {
+  constexpr double kSmall = 0.14;  // the tool fits between the rims
+  const Cloud cloud = testing::wall_with_hole();
+  const AnyBody wall(cloud);
+  const std::vector<Vec3> places = testing::places_in_cube(kSmall, 30);
+  Known most;
+  for (const ToolModel& tool : {lattice_cube(kSmall, 10, 3), lattice_cube(kSmall, 5, 6)}) {
+    ToolQuery query(tool, {});
+    for (const double z : {0.0, 0.5, 0.8, 1.0, 1.08, 1.2, 1.6}) {
+      for (double x = -0.9; x < 0.9; x += 0.06) {
+        SCOPED_TRACE(::testing::Message() << x << ' ' << z);
+        const Pose pose{generic_rotation(), {x, 0.02, z}};
+        const Result r = query.run(wall, pose);
+        const Known expected =
+            known_of(places, cloud.sensor->camera, pose, tool.radius, r.boundary > 0);
+        ASSERT_TRUE(r.visibility);
+        EXPECT_NEAR(r.volume_fraction, expected.volume, 0.04);
+        EXPECT_NEAR(r.visibility->seen_free, expected.seen_free, 0.04);
+        EXPECT_NEAR(r.visibility->unseen, expected.unseen, 0.04);
+        EXPECT_NEAR(r.visibility->out_of_view, expected.out_of_view, 0.04);
+        EXPECT_NEAR(sum_of(r), 1, 1e-9);
+        most.seen_free = std::max(most.seen_free, r.visibility->seen_free);
+        most.unseen = std::max(most.unseen, r.visibility->unseen);
+        most.out_of_view = std::max(most.out_of_view, r.visibility->out_of_view);
+      }
+    }
+  }
+  EXPECT_EQ(most.seen_free, 1);
+  EXPECT_NEAR(most.unseen, 1, 1e-9);
+  EXPECT_NEAR(most.out_of_view, 1, 1e-9);
+}
+
+// A tool that nothing hides, in the middle of the image, is seen free or inside to the last bit.
+TEST(Visibility, LeavesNothingUnseenBeforeAWall) {
+  const AnyBody wall(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 10, 2);
+  ToolQuery query(tool, {});
+  for (double z = 0.6; z < 1; z += 0.013) {
+    const Result r = query.run(wall, {generic_rotation(), {0.01, -0.02, z}});
+    EXPECT_EQ(r.visibility->unseen, 0);
+    EXPECT_EQ(r.visibility->out_of_view, 0);
+    EXPECT_EQ(r.visibility->seen_free, 1 - r.volume_fraction);
+  }
+}
+
+// Returns a noisy image with holes.
+Cloud rough(const char* scene) {
+  Camera camera = synthetic::default_camera();
+  camera.intrinsics = {130, 131, 79.5, 60};
+  camera.width = 160, camera.height = 121;
+  DepthImage image =
+      synthetic::render_with_kinect_noise(*synthetic::make_scene(scene).surface, camera, 1);
+  for (std::size_t i = 0; i < image.depth.size(); ++i)
+    if (i % 37 < 7 || i % 5 == 0) image.depth[i] = 0;
+  return make_cloud(image, camera, {.window = 3});
+}
+
+TEST(Visibility, AddsUpToOneWithTheSameBitsForAnyThreads) {
+  for (const char* scene : {"wall", "groove", "plate", "block", "step"}) {
+    const AnyBody cloud(rough(scene));
+    for (const ToolModel& tool : {lattice_cube(kEdge, 9, 2), lattice_cube(0.4, 20, 1)}) {
+      QueryOptions solid;
+      solid.shadows = Shadows::solid;
+      ToolQuery near(tool, {}), all(tool, solid);
+      for (int k = 0; k < 30; ++k) {
+        SCOPED_TRACE(::testing::Message() << scene << ' ' << k);
+        const Pose pose{generic_rotation(), {0.03 * k - 0.45, 0.02 * k - 0.3, 0.06 * k}};
+        set_thread_count(1);
+        const Result r = near.run(cloud, pose), s = all.run(cloud, pose);
+        for (const Result& one : {r, s}) {
+          EXPECT_NEAR(sum_of(one), 1, 1e-9);
+          for (const double part :
+               {one.visibility->seen_free, one.visibility->unseen, one.visibility->out_of_view})
+            EXPECT_GE(part, 0);
+        }
+        // What is taken for solid was unseen.
+        EXPECT_NEAR(r.visibility->out_of_view, s.visibility->out_of_view, 1e-12);
+        EXPECT_GE(r.visibility->unseen + 1e-12, s.visibility->unseen);
+        set_thread_count(3);
+        testing::expect_equal(r, near.run(cloud, pose));
+      }
+    }
+  }
+  set_thread_count(0);
+}
+
+TEST(Visibility, IsOfOneCamera) {
+  const Cloud seen = testing::wall_with_hole();
+  const AnyBody image(seen), points(without_camera(seen));
+  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  ToolQuery query(tool, {});
+  const Pose pose{generic_rotation(), {0.3, 0, 1}};
+  const Result alone = query.run(image, pose);
+  ASSERT_TRUE(alone.visibility);
+  EXPECT_FALSE(query.run(points, pose).visibility);
+  EXPECT_FALSE(query.run(std::array{image, image}, pose).visibility);
+  EXPECT_EQ(query.run(std::array{image, points}, pose).visibility, alone.visibility);
+  QueryOptions paper;
+  paper.measure = Measure::paper;
+  EXPECT_FALSE(ToolQuery(tool, paper).run(image, pose).visibility);
+}
+
+TEST(Collides, IsUnknownWhereTooMuchIsNotSeen) {
+  Result result;
+  EXPECT_EQ(collides(result), Collides::unknown);  // nobody has seen anything
+  result.visibility = {.seen_free = 1};
+  EXPECT_EQ(collides(result), Collides::no);
+  result.visibility = {.seen_free = 0.97, .unseen = 0.015, .out_of_view = 0.015};
+  EXPECT_EQ(collides(result), Collides::unknown);
+  EXPECT_EQ(collides(result, 0.031), Collides::no);
+  EXPECT_EQ(collides(result, 0), Collides::unknown);
+  result.volume = 1e-12;
+  for (const double limit : {0.0, 0.02, 1.0}) EXPECT_EQ(collides(result, limit), Collides::yes);
+}
+
+// A tool 30 cm behind a wall does not answer as if anybody knew.
+TEST(Collides, IsUnknownFarBehindAWall) {
+  const AnyBody wall(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  ToolQuery query(tool, {});
+  const auto at = [&](double z) { return collides(query.run(wall, {{}, {0, 0, z}})); };
+  EXPECT_EQ(at(0.8), Collides::no);
+  EXPECT_EQ(at(0.95), Collides::yes);
+  for (const double z : {1.4, 1.6, 3.0}) EXPECT_EQ(at(z), Collides::unknown) << z;
+}
+
+}  // namespace
+}  // namespace vpm
