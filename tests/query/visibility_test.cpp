@@ -1,7 +1,7 @@
 // What a camera knows of a tool: seen free, unseen and out of view, beside the volume.
 
 #include <gtest/gtest.h>
-#include <vpm/collides.h>
+#include <vpm/query_types.h>
 
 #include <algorithm>
 #include <array>

@@ -35,6 +35,7 @@ UNTRIED = [
         "times the volume of the solid, so they overlap or leave it",
     ]),
     ("a help text, a command, or the name of an option that takes the place of another word", [
+        "tool. Given several times there, a path for each --tool",
         "Measure accuracy and speed; write JSON and CSV", "--meshes MESHES", "--data DATA",
         "depend on the machine's speed. Wins over --max-error and --for-scene",
         "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames",
@@ -50,6 +51,7 @@ UNTRIED = [
         "without --camera-pose): is one of them inverted, or in millimetres?",
     ]),
     ("for programs that call the library", [
+        "make it with `with_force`", "give one for each, or none",
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
         "make it with rotation_from_matrix or rotation_from_quaternion", "make their queries with the same options",
         "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh", "use the one that it was moved to",
@@ -57,6 +59,19 @@ UNTRIED = [
         "make both with `with_force`, or ask without", "give a closed mesh that is oriented outward",
         "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
     ]),
+    ("stands in a transcript: cases/solids.t, resume.t, several_tools.t", [
+        "leave that choice out, or add a cloud", "make it again by vpm-graph, without --no-surface",
+        "leave the measure or the solids out", "write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]",
+        "--solid is a file: standard input holds none", ", but --solid is given", 'give one for each, or leave "solids" out',
+        "holds lines of a run that was interrupted: give --resume to go on after", "them, or --force to begin anew",
+        "give the same options and files, or --force without --resume to begin anew",
+        "name the file of the run that was interrupted", "chosen by --frames and more than one --tool", "--poses is given",
+        "times and --tool", "times: give one path for all tools, or one for each",
+        "--poses has several values; leave all but one out: only several --tool with --frames have a path each",
+        "--resume compares files with those of the run before: name one for --", ".part: --resume goes on after them",
+        "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
+    ]),
+    ("two runs at once write one file", ["wait for its end, or name another output"]),
     ("an answer of vpm-query --serve: cases/serve.t", [
         'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',
         'write {"pose": [tx,ty,tz,qx,qy,qz,qw]} or {"cloud": "scene.vpmc"}, with an "id" if wanted',
@@ -77,6 +92,9 @@ UNTRIED = [
         "); use --device cpu, or leave the option out", "computes on the CPU only; use --device cpu, or leave the option out",
     ]),
     ("needs a file of vpm that no tool writes: tests/formats, tests/graph, tests/model", [
+        "make the tool model again with vpm-graph",
+        ": the pieces of its crossing surface do not close, so the model keeps none and cannot be measured against solids; "
+        "pack the mesh with --repair voxel for that",
         "must hold one record; make the file again", "chunk TOOL must hold one record; make the file again", "pack the mesh again",
         ", which is no number; pack the mesh again, or leave --mesh out", "choose one of the size of the gaps between them",
     ]),
@@ -183,7 +201,7 @@ def advice_in_sources():
         if path.parent.name == "python":  # says it to programs: tests/python
             continue
         code = re.sub(r"^\s*#.*$|(?<![:\"])//.*$", "", path.read_text(), flags=re.MULTILINE)
-        code = re.sub(r"(?:add_(?:option|flag)\w*|show_examples)\([^;]*;", "", code)
+        code = re.sub(r"(?:add_(?:option|flag)\w*|show_examples|show_exit_code)\([^;]*;", "", code)
         for literal in LITERALS.findall(code):
             text = "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', literal)).replace('\\"', '"').strip()
             if " " in text and "|" not in text and (OPTION.search(text) or ASKS.search(text)):

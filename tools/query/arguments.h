@@ -1,7 +1,7 @@
 // Options of vpm-query.
 #pragma once
 
-#include <vpm/collides.h>
+#include <vpm/query_types.h>
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // Answers --collides: a field for each line of results, and the exit code of all.
 #pragma once
 
-#include <vpm/collides.h>
+#include <vpm/query_types.h>
 
 #include <nlohmann/json.hpp>
 

@@ -74,11 +74,28 @@ struct Result {
   // the boundary of what the tool shares with one of them misses to be closed. At most 1e-8.
   std::optional<double> closure;
   // What the scene's camera knows, by the refined measure; its part of the volume is that in the
-  // camera's body. Of solids alone the whole tool is seen. Nothing is told
-  // of points without a camera, nor of several cameras, which do not know of each other.
+  // camera's body. Of solids alone the whole tool is seen. Nothing is told of points without a
+  // camera, nor of several cameras, which do not know of each other.
   std::optional<Visibility> visibility;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;
 };
+
+// Says if a tool is in a scene's solid. Unknown: nothing of the tool is in it as far as anybody
+// knows, but too much of the tool was not seen.
+enum class Collides : std::uint8_t { no, yes, unknown };
+
+// Part of the tool that may be unseen or out of view where collides() answers no.
+inline constexpr double kUnseenLimit = 0.02;
+
+// Returns yes if a volume of the tool is in the solid; otherwise unknown, if the part of it that is
+// unseen or out of view (Visibility) is more than `unseen_limit`, or the result does not tell what
+// was seen; otherwise no. Thread-safe.
+constexpr Collides collides(const Result& result, double unseen_limit = kUnseenLimit) {
+  if (result.volume > 0) return Collides::yes;
+  if (!result.visibility) return Collides::unknown;
+  const double not_seen = result.visibility->unseen + result.visibility->out_of_view;
+  return not_seen > unseen_limit ? Collides::unknown : Collides::no;
+}
 
 }  // namespace vpm
