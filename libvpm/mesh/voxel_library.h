@@ -14,8 +14,8 @@
 
 namespace vpm {
 
-// Signed distances from a surface at the corners of a lattice, in its cells: negative inside,
-// clamped to a band.
+// Signed distances from a surface to the centres of voxels, in voxels: negative inside, clamped to
+// a band.
 class VoxelDistances {
  public:
   // Reads values, faster if they are neighbours. Each thread needs its own.
@@ -47,13 +47,13 @@ struct VoxelFaces {
 class VoxelLibrary {
  public:
   virtual ~VoxelLibrary() = default;
-  // Returns distances from triangles, of points in cells of the lattice. Whatever cannot be reached
-  // from outside is inside.
+  // Returns the distances from triangles of points, whose coordinates are in voxels. What cannot be
+  // reached from outside is inside.
   virtual std::unique_ptr<VoxelDistances> distances(std::span<const Vec3f> points,
                                                     std::span<const Triangle> triangles,
                                                     float band) const = 0;
-  // Returns the surface on which a field is zero. It is `outside` where there is no block; voxels
-  // below that carry the surface.
+  // Returns the surface on which a field is zero. The field is `outside` where no block is; only
+  // voxels whose value is smaller in size take part.
   virtual VoxelFaces zero_surface(std::span<const VoxelBlock> blocks, float outside) const = 0;
 };
 
