@@ -31,7 +31,7 @@ plugins=()  # loaded when they are first needed
 for name in libvpm_voxels.so libvpm_mesh_plugin.so; do
   [[ ! -e $build/lib/$name ]] || plugins+=("$build/lib/$name")
 done
-[[ ${#plugins[@]} -eq 0 ]] || install -m 755 "${plugins[@]}" "$folder/lib/"
+if [[ -e $build/lib/libvpm_voxels.so ]]; then install -m 755 "$build/lib/libvpm_voxels.so" "$folder/lib/"; fi
 for name in "${names[@]}"; do
   cmake --install "$build" --component "$name" --prefix "$folder" --strip >/dev/null
   [[ -x $folder/bin/$name ]] || { echo "bundle.sh: $build has nothing to install as '$name'" >&2; exit 1; }
