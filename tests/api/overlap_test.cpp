@@ -9,27 +9,15 @@
 #include <thread>
 #include <vector>
 
+#include "tests/api/boxes.h"
+
 namespace {
+
+using vpm::test::kind_of;
 
 // Returns a closed box with its low corner at the origin.
 vpm::SolidMesh box(double x, double y, double z) {
-  std::vector<vpm::Vec3> corners;
-  for (int k = 0; k < 8; ++k)
-    corners.push_back({(k & 1) != 0 ? x : 0, (k & 2) != 0 ? y : 0, (k & 4) != 0 ? z : 0});
-  const std::vector<std::array<std::uint32_t, 3>> triangles{
-      {0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return vpm::SolidMesh::from_triangles(corners, triangles, {.scale = 1});
-}
-
-vpm::ErrorKind kind_of(const auto& call) {
-  try {
-    call();
-  } catch (const vpm::Error& error) {
-    return error.kind();
-  }
-  ADD_FAILURE() << "nothing is thrown";
-  return {};
+  return vpm::test::box({}, {x, y, z});
 }
 
 TEST(Overlap, IsToldInCubicMetresInTheWorldsFrame) {

@@ -9,23 +9,19 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/api/boxes.h"
+
 namespace {
 
 using vpm::Body;
 using vpm::Pose;
 using vpm::Result;
 using vpm::Vec3;
+using vpm::test::kind_of;
 
 // Returns a closed box about the origin with these edges.
 vpm::SolidMesh box(double x, double y, double z) {
-  std::vector<Vec3> corners;
-  for (int k = 0; k < 8; ++k)
-    corners.push_back({(k & 1) != 0 ? x / 2 : -x / 2, (k & 2) != 0 ? y / 2 : -y / 2,
-                       (k & 4) != 0 ? z / 2 : -z / 2});
-  const std::vector<std::array<std::uint32_t, 3>> triangles{
-      {0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return vpm::SolidMesh::from_triangles(corners, triangles, {.scale = 1});
+  return vpm::test::box({-x / 2, -y / 2, -z / 2}, {x / 2, y / 2, z / 2});
 }
 
 Pose at(double x, double y, double z) {
@@ -35,16 +31,6 @@ Pose at(double x, double y, double z) {
 bool is_near(Vec3 a, Vec3 b, double within) {
   return std::abs(a.x - b.x) <= within && std::abs(a.y - b.y) <= within &&
          std::abs(a.z - b.z) <= within;
-}
-
-vpm::ErrorKind kind_of(const auto& call) {
-  try {
-    call();
-  } catch (const vpm::Error& error) {
-    return error.kind();
-  }
-  ADD_FAILURE() << "nothing is thrown";
-  return {};
 }
 
 // A wall at z = 1 m that a camera at the origin sees.

@@ -52,6 +52,21 @@ void expect_same_batch(ToolQuery& query, const AnyBody& cloud, const std::vector
   }
 }
 
+// Asks a tool on the CPU and on a device, pose by pose and then together, and expects the same
+// bits. Returns the CPU's answers.
+std::vector<Result> same_answers(const ToolModel& tool, const AnyBody& cloud,
+                                 const std::vector<Pose>& poses) {
+  ToolQuery on_cpu(tool, {}), on_device(tool, {.device = {Device::Kind::cuda, 0}});
+  std::vector<Result> expected;
+  for (const Pose& pose : poses) {
+    expected.push_back(on_cpu.run(cloud, pose));
+    SCOPED_TRACE(expected.size());
+    expect_equal(expected.back(), on_device.run(cloud, pose));
+  }
+  expect_same_batch(on_device, cloud, poses, expected);
+  return expected;
+}
+
 using SceneCase = std::tuple<const char*, bool>;  // scene, with camera
 
 std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
@@ -116,19 +131,8 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   for (int k = 0; k < kPoses; ++k) poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
   for (const ToolModel& tool :
        {testing::lattice_cube(0.02, 20, 1), testing::lattice_cube(0.03, 20, 1),
-        testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)}) {
-    QueryOptions options;
-    ToolQuery on_cpu(tool, options);
-    options.device = {Device::Kind::cuda, 0};
-    ToolQuery on_device(tool, options);
-    std::vector<Result> expected;
-    for (const Pose& pose : poses) {
-      expected.push_back(on_cpu.run(cloud, pose));
-      SCOPED_TRACE(expected.size());
-      expect_equal(expected.back(), on_device.run(cloud, pose));
-    }
-    expect_same_batch(on_device, cloud, poses, expected);
-  }
+        testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)})
+    same_answers(tool, cloud, poses);
 }
 
 // Passes through the wall, its hole, the space that it hides, and out of the view.
@@ -142,19 +146,10 @@ TEST(UnseenOnDevice, IsTheSame) {
   double unseen = 0, out_of_view = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
                                 testing::lattice_cube(0.25, 21, 1)}) {
-    QueryOptions options;
-    ToolQuery on_cpu(tool, options);
-    options.device = {Device::Kind::cuda, 0};
-    ToolQuery on_device(tool, options);
-    std::vector<Result> expected;
-    for (const Pose& pose : poses) {
-      expected.push_back(on_cpu.run(cloud, pose));
-      SCOPED_TRACE(expected.size());
-      expect_equal(expected.back(), on_device.run(cloud, pose));
-      unseen += expected.back().visibility->unseen;
-      out_of_view += expected.back().visibility->out_of_view;
+    for (const Result& result : same_answers(tool, cloud, poses)) {
+      unseen += result.visibility->unseen;
+      out_of_view += result.visibility->out_of_view;
     }
-    expect_same_batch(on_device, cloud, poses, expected);
   }
   EXPECT_GT(unseen, testing::expected_of(20));
   EXPECT_GT(out_of_view, testing::expected_of(20));
@@ -216,18 +211,9 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
   for (const bool camera : {true, false}) {
     const AnyBody cloud(camera ? seen : without_camera(seen));
-    QueryOptions options;
-    ToolQuery on_cpu(tool, options);
-    options.device = {Device::Kind::cuda, 0};
-    ToolQuery on_device(tool, options);
     std::vector<Pose> poses;
-    std::vector<Result> expected;
-    for (int k = 0; k < 4; ++k) {
-      poses.push_back(pose_of(7 * k + 5));
-      expected.push_back(on_cpu.run(cloud, poses.back()));
-      expect_equal(expected.back(), on_device.run(cloud, poses.back()));
-    }
-    expect_same_batch(on_device, cloud, poses, expected);
+    for (int k = 0; k < 4; ++k) poses.push_back(pose_of(7 * k + 5));
+    same_answers(tool, cloud, poses);
   }
 }
 

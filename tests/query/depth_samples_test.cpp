@@ -31,11 +31,7 @@ class Numbers {
 
 // Returns a cloud with creases, jumps, noise and holes.
 Cloud rough_cloud(const char* scene) {
-  Camera camera = synthetic::default_camera();
-  camera.intrinsics = {130, 131, 79.5, 60};
-  camera.width = 160, camera.height = 121;
-  DepthImage image =
-      synthetic::render_with_kinect_noise(*synthetic::make_scene(scene).surface, camera, 1);
+  auto [camera, image] = testing::small_noisy_image(scene);
   Numbers numbers;
   for (float& depth : image.depth) {
     if (numbers.between(0, 1) < 0.02) depth = 0;

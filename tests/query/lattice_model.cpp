@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "libvpm/cloud/normals.h"
+#include "libvpm/synthetic/render.h"
 
 namespace vpm::testing {
 namespace {
@@ -130,6 +131,14 @@ Rotation generic_rotation() {
   Quaternion q{0.31, -0.57, 0.21, 0.73};
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
+}
+
+SmallImage small_noisy_image(const char* scene) {
+  Camera camera = synthetic::default_camera();
+  camera.intrinsics = {130, 131, 79.5, 60};
+  camera.width = 160, camera.height = 121;
+  return {camera,
+          synthetic::render_with_kinect_noise(*synthetic::make_scene(scene).surface, camera, 1)};
 }
 
 Cloud permuted(const Cloud& cloud) {

@@ -18,6 +18,14 @@ std::vector<Vec3> places_in_cube(double edge, int per_edge);
 // Returns the cloud that the scene's camera sees, with the surface's own normals.
 Cloud see(const synthetic::Scene& scene);
 
+// Returns what a Kinect measures of a scene in a small image, whose numbers of pixels are no
+// multiples of each other.
+struct SmallImage {
+  Camera camera;
+  DepthImage depth;
+};
+SmallImage small_noisy_image(const char* scene);
+
 // Returns the cloud of a flat wall at a depth of 1 m, 1 m wide, of which a rectangle of pixels was
 // not measured: kHole of them along each axis.
 Cloud wall_with_hole();

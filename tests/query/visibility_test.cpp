@@ -108,11 +108,7 @@ TEST(Visibility, LeavesNothingUnseenBeforeAWall) {
 
 // Returns a noisy image with holes.
 Cloud rough(const char* scene) {
-  Camera camera = synthetic::default_camera();
-  camera.intrinsics = {130, 131, 79.5, 60};
-  camera.width = 160, camera.height = 121;
-  DepthImage image =
-      synthetic::render_with_kinect_noise(*synthetic::make_scene(scene).surface, camera, 1);
+  auto [camera, image] = testing::small_noisy_image(scene);
   for (std::size_t i = 0; i < image.depth.size(); ++i)
     if (i % 37 < 7 || i % 5 == 0) image.depth[i] = 0;
   return make_cloud(image, camera, {.window = 3});
@@ -176,7 +172,7 @@ TEST(Collides, IsUnknownWhereTooMuchIsNotSeen) {
   for (const double limit : {0.0, 0.02, 1.0}) EXPECT_EQ(collides(result, limit), Collides::yes);
 }
 
-// A tool 30 cm behind a wall does not answer as if anybody knew.
+// Of a tool 30 cm behind a wall nobody can know if it collides, and the answer says so.
 TEST(Collides, IsUnknownFarBehindAWall) {
   const AnyBody wall(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
