@@ -35,7 +35,8 @@ class LineFit {
   double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0, pp_ = 0;
 };
 
-// Fits column = fx x/z + cx and row = fy y/z + cy to the points of a grid.
+// Fits a pinhole camera to points (x, y, z) whose pixels are known: column = fx x/z + cx and row =
+// fy y/z + cy.
 struct GridLines {
   LineFit column_of_x, row_of_y, column_of_y, row_of_x;
   std::size_t seen = 0;

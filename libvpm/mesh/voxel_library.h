@@ -18,7 +18,8 @@ namespace vpm {
 // a band.
 class VoxelDistances {
  public:
-  // Reads values, faster if they are neighbours. Each thread needs its own.
+  // Reads the distance of one voxel after the other, sooner where they are neighbours. Each thread
+  // needs a reader of its own.
   class Reader {
    public:
     virtual ~Reader() = default;

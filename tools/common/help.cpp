@@ -19,7 +19,8 @@ void add_word(std::string& text, const std::string& word, std::size_t column) {
     text += (text.ends_with(' ') ? "" : " ") + word;
 }
 
-// Returns a line of two columns; what is long goes on below.
+// Returns a line of the help: `left`, such as the names of an option, and beside it `right`, which
+// goes on in further lines where it is long.
 std::string in_columns(const std::string& left, const std::string& right) {
   std::string text = std::string(kMargin, ' ') + left;
   text += text.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ')

@@ -13,7 +13,7 @@ class Collisions {
   Collisions(bool is_asked, double unseen_limit)
       : is_asked_(is_asked), unseen_limit_(unseen_limit) {}
 
-  // Adds the field to the line of a result.
+  // Adds the field `collides` to the line of results of one pose.
   void answer(const Result& result, nlohmann::ordered_json& line);
 
   // Returns 10 if any line was a hit, else 11 if any was unknown, else 0; 0 if nobody asked.

@@ -66,7 +66,8 @@ __device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
 }
 
-// Adds what was not seen, which mostly is nothing.
+// Adds what was not seen of a part of the tool to the sum of the pose. For most parts it is
+// nothing, which costs no atomic operation.
 __device__ inline void add_atomically(const UnseenSum& part, UnseenSum& sum) {
   if (part.unseen.value != 0) add_term(sum.unseen.value, part.unseen.value);
   if (part.out_of_view.value != 0) add_term(sum.out_of_view.value, part.out_of_view.value);
