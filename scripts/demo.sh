@@ -6,7 +6,9 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_packages "${packages[@]}"
+install_meanwhile "${picture_packages[@]}"
 build_demo
+wait_for_packages
 
 cd "$repository"
 out=demo-output

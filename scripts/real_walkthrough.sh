@@ -13,7 +13,7 @@ set -euo pipefail
 data=$(realpath "${1:-$repository/../shared/data}")
 out=${2:-$repository/demo-output/real}
 
-install_packages "${packages[@]}"
+install_packages "${packages[@]}" "${picture_packages[@]}"
 build_demo
 mkdir -p "$out"
 

@@ -14,9 +14,12 @@ packages=(
   libtiff-dev libyaml-cpp-dev
   libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
   libglu1-mesa-dev libassimp-dev libexpat1-dev
-  libjs-three python3 python3-numpy python3-matplotlib
+  libjs-three python3
 )
-test_packages=(libgtest-dev pkg-config python3-jsonschema pybind11-dev python3-dev python3-pytest python3-venv)
+test_packages=(libgtest-dev pkg-config pybind11-dev python3-dev)
+# What nothing is built with: pictures and tables of scripts are made by the first, and tests run all of them.
+picture_packages=(python3-numpy python3-matplotlib)
+test_run_packages=("${picture_packages[@]}" python3-jsonschema python3-pytest python3-venv)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -54,7 +57,30 @@ install_packages() {
 
 # Installs all that is missing for programs and tests.
 install_missing() {
-  install_packages "${packages[@]}" "${test_packages[@]}"
+  install_packages "${packages[@]}" "${test_packages[@]}" "${test_run_packages[@]}"
+}
+
+# Installs packages while what follows goes on, until wait_for_packages. Who is not root may be asked for a password, so it is
+# done at once then.
+install_meanwhile() {
+  installing=
+  if [ "$(id -u)" -ne 0 ]; then
+    install_packages "$@"
+    return
+  fi
+  install_log=$(mktemp)
+  install_packages "$@" >"$install_log" 2>&1 </dev/null &
+  installing=$!
+}
+
+# Waits for the packages of install_meanwhile; shows what was said where they cannot be installed.
+wait_for_packages() {
+  if [ -z "$installing" ]; then return; fi
+  local status=0
+  wait "$installing" || status=$?
+  if [ $status -ne 0 ]; then cat "$install_log" >&2; fi
+  rm -f "$install_log"
+  return $status
 }
 
 # Prints CMake's options for device code where there is nvcc: machine code for this machine's device only, or, without a device,

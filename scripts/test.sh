@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test.
+# Installs what is missing, builds, and runs every test. VPM_CHECKERS names further packages, whose tests are skipped without
+# them, such as "chromium clang-format-14".
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-install_missing
+install_packages "${packages[@]}" "${test_packages[@]}"
+# shellcheck disable=SC2086  # several words
+install_meanwhile "${test_run_packages[@]}" ${VPM_CHECKERS:-}
 build
+wait_for_packages
 say "Running the tests"
 ctest --test-dir "$repository/build/release" --output-on-failure --parallel "$(nproc)" "$@"

@@ -25,7 +25,7 @@ using synthetic::make_torus;
 
 const Rotation kTurn = rotation_from_quaternion({0.117, 0.083, 0.151, 0.978});
 
-Solid turned(Solid solid) {
+Solid tilted(Solid solid) {
   for (Vec3& p : solid.vertices) p = kTurn * p;
   return solid;
 }
@@ -75,7 +75,7 @@ TEST(TriangleCells, FillTheTriangleAndNoSegmentCrossesThem) {
 
 TEST(EnclosedMass, IsThatOfTheMeshWhereNothingMeets) {
   for (const Solid& solid :
-       {make_cube(0.3), make_torus(1, 0.3, 24, 12), turned(make_icosphere(0.7, 2)),
+       {make_cube(0.3), make_torus(1, 0.3, 24, 12), tilted(make_icosphere(0.7, 2)),
         together(make_cube(2), turned_over(make_cube(1))),
         together(make_cube(2), moved(make_cube(1), {5, 0, 0}))}) {
     const MassProperties plain = mass_properties(solid), enclosed = enclosed_mass(solid);
@@ -87,7 +87,7 @@ TEST(EnclosedMass, IsThatOfTheMeshWhereNothingMeets) {
 TEST(EnclosedMass, OverlappingBoxesCountOnce) {
   // Two arms make a cross; one arm is shorter on one side.
   const Solid cross = together(make_box(1, 0.5, 0.5), moved(make_box(0.5, 1, 0.5), {0, 0.25, 0}));
-  for (const Solid& solid : {cross, turned(cross), moved(turned(cross), {1e3, -2e3, 5e2})}) {
+  for (const Solid& solid : {cross, tilted(cross), moved(tilted(cross), {1e3, -2e3, 5e2})}) {
     const MassProperties mass = enclosed_mass(solid);
     EXPECT_NEAR(mass.volume, 0.25 + 0.25 - 0.125, 1e-10);
   }
@@ -103,20 +103,20 @@ TEST(EnclosedMass, FacesThatCoincideBoundNothing) {
   const Vec3 center = enclosed_mass(stack).center_of_mass;
   EXPECT_NEAR(enclosed_mass(stack).volume, 9, 1e-13);
   EXPECT_NEAR(norm(center - Vec3{0.2, 0.1, 1.5} / 9), 0, 1e-14);
-  EXPECT_NEAR(enclosed_mass(turned(stack)).volume, 9, 1e-9);
-  EXPECT_NEAR(norm(enclosed_mass(turned(stack)).center_of_mass - kTurn * center), 0, 1e-9);
-  const Solid ball = turned(make_icosphere(1, 2));
+  EXPECT_NEAR(enclosed_mass(tilted(stack)).volume, 9, 1e-9);
+  EXPECT_NEAR(norm(enclosed_mass(tilted(stack)).center_of_mass - kTurn * center), 0, 1e-9);
+  const Solid ball = tilted(make_icosphere(1, 2));
   const double volume = mass_properties(ball).volume;
   EXPECT_NEAR(enclosed_mass(together(together(ball, ball), ball)).volume, volume, 1e-9);
   // A pocket is cut flush with a face.
   const Solid pocket = together(make_cube(2), turned_over(moved(make_cube(1), {0, 0, 0.5})));
   EXPECT_NEAR(enclosed_mass(pocket).volume, 7, 1e-12);
-  EXPECT_NEAR(enclosed_mass(turned(pocket)).volume, 7, 1e-9);
+  EXPECT_NEAR(enclosed_mass(tilted(pocket)).volume, 7, 1e-9);
 }
 
 TEST(EnclosedMass, AgreesWithALensInClosedForm) {
   const int fine = 5;  // 20480 triangles each
-  const Solid a = make_icosphere(1, fine), b = moved(turned(a), {1, 0, 0});
+  const Solid a = make_icosphere(1, fine), b = moved(tilted(a), {1, 0, 0});
   const double ball = mass_properties(a).volume, d = 1;
   const double lens = kPi * (4 + d) * (2 - d) * (2 - d) / 12;
   EXPECT_NEAR(enclosed_mass(together(a, b)).volume, 2 * ball - lens, 2e-3 * lens);
@@ -135,7 +135,7 @@ TEST(EnclosedSurface, IntegralsOverItCountOverlapsOnce) {
 }
 
 TEST(EnclosedMass, ScalesByPowersOfTwoToTheBitForAnyThreads) {
-  const Solid pair = together(make_icosphere(1, 3), turned(moved(make_cube(1.3), {0.6, 0.3, 0.2})));
+  const Solid pair = together(make_icosphere(1, 3), tilted(moved(make_cube(1.3), {0.6, 0.3, 0.2})));
   set_thread_count(1);
   const MassProperties one = enclosed_mass(pair);
   set_thread_count(8);

@@ -115,7 +115,7 @@ Solid with_long_coordinates(Solid solid) {
 }
 
 TEST(MeshRefusal, IsShortForManyDefects) {
-  Solid many = with_long_coordinates(make_icosphere(1, 4));  // 5120 triangles
+  Solid many = with_long_coordinates(make_icosphere(1, 3));  // 1280 triangles
   for (std::size_t k = many.triangles.size(); k-- > 0;)
     if (k % 17 == 0) many.triangles.erase(many.triangles.begin() + static_cast<std::ptrdiff_t>(k));
   EXPECT_LE(refusal_of(many).size(), kLongest) << refusal_of(many);

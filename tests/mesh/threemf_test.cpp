@@ -446,17 +446,21 @@ TEST_F(Threemf, ComponentsWithoutEndAreRefused) {
 }
 
 TEST_F(Threemf, WhatUnpacksToFarMoreIsRefused) {
-  std::string packed(8'000'000, '\0');
-  const std::string plain(1'000'000'000, ' ');
+  // A block that is flushed can be repeated: 10^9 blanks are packed by packing 10^6.
+  std::string block(100'000, '\0');
+  const std::string plain(1'000'000, ' ');
   z_stream stream{};
-  ASSERT_EQ(deflateInit2(&stream, 1, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY), Z_OK);
+  ASSERT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY), Z_OK);
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
   stream.avail_in = static_cast<uInt>(plain.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  ASSERT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  packed.resize(stream.total_out);
+  stream.next_out = reinterpret_cast<Bytef*>(block.data());
+  stream.avail_out = static_cast<uInt>(block.size());
+  ASSERT_EQ(deflate(&stream, Z_FULL_FLUSH), Z_OK);
+  ASSERT_EQ(stream.avail_in, 0U);
+  block.resize(stream.total_out);
   deflateEnd(&stream);
+  std::string packed;
+  for (int k = 0; k < 1000; ++k) packed += block;
   std::string archive = zip({main_model(packed)});
   archive[archive.find("PK\x01\x02") + 10] = 8;  // the method: deflate
   expect_refusal(archive, "it unpacks to more than");

@@ -23,6 +23,9 @@ BIN, FOLDER, BROWSER = pathlib.Path(), pathlib.Path(), None
 NAME = "<script>alert(1)</script>.vpmg"  # of a file, as a page must show it
 OPEN_MESH = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n"
 INTRINSICS = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
+WINDOW = (960, 540)  # pixels, which the processor draws: the time of this test is theirs
+HALVES = (240, 320)  # rows and columns of the demo's image, of which every second is taken
+HALF_INTRINSICS = ("--intrinsics", "262.5,262.5,159.75,119.75", "--depth-scale", "5000")
 
 
 def run(tool, *arguments, code=0):
@@ -98,14 +101,17 @@ def make_demo():
     run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 300, "--report", "pack.json", "--export",
         "tool.csv", "--view", "pack.html")
     run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", 50, "--report", "graph.json", "--view", "graph.html")
-    run("vpm-normals", "depth.png", "-o", "scene.vpmc", *INTRINSICS, "--report", "normals.json", "--view",
+    import matplotlib.image
+    depth = matplotlib.image.imread(FOLDER / "depth.png")[::2, ::2]
+    write_depth("depth.png", numpy.rint(depth * 65535))
+    run("vpm-normals", "depth.png", "-o", "scene.vpmc", *HALF_INTRINSICS, "--report", "normals.json", "--view",
         "normals.html")
     run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", "poses.jsonl", "-o", "results.jsonl",
         "--view", "query.html")
 
 
 class PageTest(unittest.TestCase):
-    def open(self, name, width=1280, height=720, phone=False):
+    def open(self, name, width=WINDOW[0], height=WINDOW[1], phone=False):
         page = BROWSER.open(FOLDER / name, width, height, phone)
         self.addCleanup(page.close)
         self.assertEqual(page.faults, [])
@@ -145,7 +151,7 @@ class Query(PageTest):
             self.assertEqual(counts[1:3], [lines[step]["boundary"], lines[step]["inside"]])
             self.assertEqual(sum(counts), 300)
         depth = json.loads((FOLDER / "normals.json").read_text())
-        self.assertEqual(self.layer(page, "measured surface")["count"], 640 * 480 - depth["invalid"])
+        self.assertEqual(self.layer(page, "measured surface")["count"], HALVES[0] * HALVES[1] - depth["invalid"])
 
     def test_slider_changes_pose_and_numbers(self):
         page = self.open("query.html")
@@ -175,7 +181,7 @@ class Query(PageTest):
         self.assertEqual(page.report()["step"], stopped)
 
     def test_screenshots_show_tool_and_surface_on_desks_and_phones(self):
-        for width, height, phone in ((1280, 720, False), (390, 844, True)):
+        for width, height, phone in ((*WINDOW, False), (390, 844, True)):
             page = self.open("query.html", width, height, phone)
             self.assert_fits(page)
             for view in ("overview", "side", "contact"):
@@ -191,25 +197,25 @@ class Query(PageTest):
         self.assertTrue(page.report()["bySoftware"])
         page.settle()
         at_rest = page.report()["load"]
-        page.mouse("mousePressed", 800, 400)
-        for x in (820, 840):
-            page.mouse("mouseMoved", x, 400, buttons=1)
+        page.mouse("mousePressed", 600, 300)
+        for x in (620, 640):
+            page.mouse("mouseMoved", x, 300, buttons=1)
             page.settle()
         self.assertLess(page.report()["load"]["triangles"], at_rest["triangles"])
-        page.mouse("mouseReleased", 840, 400)
+        page.mouse("mouseReleased", 640, 300)
         page.settle()
         self.assertEqual(page.report()["load"], at_rest)
 
     def test_mouse_and_touch_turn_the_scene(self):
         page = self.open("query.html")
         before = scene(page)
-        page.mouse("mousePressed", 800, 400)
-        for x in (820, 860, 900):
-            page.mouse("mouseMoved", x, 420, buttons=1)
-        page.mouse("mouseReleased", 900, 420)
+        page.mouse("mousePressed", 600, 300)
+        for x in (620, 660, 700):
+            page.mouse("mouseMoved", x, 320, buttons=1)
+        page.mouse("mouseReleased", 700, 320)
         turned = scene(page)
         self.assertGreater(numpy.abs(turned - before).mean(), 0.005)
-        page.call("Input.dispatchMouseEvent", type="mouseWheel", x=800, y=400, deltaX=0, deltaY=-300)
+        page.call("Input.dispatchMouseEvent", type="mouseWheel", x=600, y=300, deltaX=0, deltaY=-300)
         self.assertGreater(numpy.abs(scene(page) - turned).mean(), 0.005)
         phone = self.open("query.html", 390, 844, True)
         before = scene(phone)
@@ -364,9 +370,9 @@ class OtherTools(PageTest):
         self.assertGreater(page.report()["cell"]["samples"], 0)
         page.evaluate("vpm.showCell(-1)")
         page.evaluate("vpm.setLayer('solid', false)")
-        for x in range(500, 1200, 20):  # somewhere on the ring
-            page.mouse("mousePressed", x, 330)
-            page.mouse("mouseReleased", x, 330)
+        for x in range(375, 900, 15):  # somewhere on the ring
+            page.mouse("mousePressed", x, 250)
+            page.mouse("mouseReleased", x, 250)
             if page.report()["cell"]:
                 break
         self.assertGreater(page.report()["cell"]["samples"], 0)

@@ -76,8 +76,8 @@ void add_points(std::vector<ExtremeCase>& cases, const Device& device, bool quic
       [=] { return refined(cube_of_64(), repeated(1000, {}, up), 0.5, kSampled); });
   add("a million on a plane",
       [=] { return refined(cube_of_64(), floor_of(1000, 0.3), 0.65, kSampled); });
-  const int side = quick ? 1000 : 3163;
-  add(quick ? "a million in one sphere" : "ten million in one sphere",
+  const int side = quick ? 500 : 3163;
+  add(quick ? "250 000 in one sphere" : "ten million in one sphere",
       [=] { return paper(cube_of_1(), points_in_one_sphere(side), ball_part(-0.5)); });
   if (!quick) {
     add("ten million in one sphere, refined",

@@ -84,13 +84,13 @@ void add_tools(std::vector<ExtremeCase>& cases, const Device& device, bool quick
   };
   add("one sphere", [=] { return at_floor(device, lattice_packing(1), 0.1, 0.02); });
   add("two spheres", [=] { return at_floor(device, two_spheres(), 0.3, 0.02); });
-  const int edge = quick ? 20 : 100;
-  add(quick ? "8000 spheres" : "a million spheres",
+  const int edge = quick ? 10 : 100;
+  add(quick ? "1000 spheres" : "a million spheres",
       [=] { return at_floor(device, lattice_packing(edge), 0.123, 2e-3); });
   add("radii from 1 to 1e-6",
       [=] { return at_floor(device, radii_over_six_decades(), -0.2, 0.01); });
   add("radii from 1 to 1e-6, the smallest touched", [] { return touch_of_the_smallest(); });
-  const std::uint32_t spheres = quick ? 200 : 2000;
+  const std::uint32_t spheres = quick ? 60 : 2000;
   add("needle 1:1000", [=] {
     return packed_into_wall(device, synthetic::make_box(0.2, 0.0002, 0.0002), spheres, 0.01);
   });
