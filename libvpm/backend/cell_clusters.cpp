@@ -36,7 +36,7 @@ BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Ve
 void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end,
                   CellClusters& out) {
   const CellCluster cluster = enclosing_cluster(tool, level, out.cells, begin, end);
-  if (end - begin == 1 || may_be_planar(cluster.reach, tool.radius)) {
+  if (end - begin == 1 || may_be_planar(cluster.radius, tool.radius)) {
     std::sort(out.cells.begin() + begin, out.cells.begin() + end);
     out.clusters.push_back(cluster);
     return;
@@ -60,12 +60,12 @@ CellCluster enclosing_cluster(const ToolModel& tool, const Level& level,
                               std::uint32_t end) {
   const Box box = box_of_centers(tool, cells, begin, end);
   const Vec3 center = 0.5 * (box.low + box.high);
-  double reach = 0;
+  double radius = 0;
   for (std::uint32_t k = begin; k < end; ++k) {
-    reach =
-        std::max(reach, norm(tool.spheres[cells[k]].center - center) + level.cell_radius[cells[k]]);
+    radius = std::max(radius,
+                      norm(tool.spheres[cells[k]].center - center) + level.cell_radius[cells[k]]);
   }
-  return {begin, end, center - tool.center_of_mass, kRounding * reach};
+  return {begin, end, center - tool.center_of_mass, kRounding * radius};
 }
 
 std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& cells, std::uint32_t begin,

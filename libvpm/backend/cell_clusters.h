@@ -10,8 +10,8 @@ namespace vpm {
 
 struct CellCluster {
   std::uint32_t begin = 0, end = 0;  // rows of CellClusters::cells
-  Vec3 center;       // centre of a ball about all cells, about the centre of mass, m
-  double reach = 0;  // radius of that ball, m
+  Vec3 center;        // centre of a ball about all cells, about the centre of mass, m
+  double radius = 0;  // radius of that ball, m
 };
 
 // Lists the clusters of a level; every cell lies in one.

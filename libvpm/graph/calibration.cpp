@@ -133,8 +133,8 @@ double fraction_inside(const ToolModel& model, const Level& level, const CellClu
   double sum = 0;
   for (const CellCluster& cluster : clusters.clusters) {
     TangentPlane mean;
-    const bool is_planar = may_be_planar(cluster.reach, model.radius) &&
-                           cut.find_plane(cluster.center, cluster.reach, mean);
+    const bool is_planar = may_be_planar(cluster.radius, model.radius) &&
+                           cut.find_plane(cluster.center, cluster.radius, mean);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const std::uint32_t i = clusters.cells[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {

@@ -110,7 +110,7 @@ class CellMeasure {
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, far, result);
     samples.flush(*this, result);
     if (result.is_far && result.plane.count > 0) {
-      const CutCell own{result.plane, center_, cell_.reach};
+      const CutCell own{result.plane, center_, cell_.radius};
       const auto supports = [&](Vec3 x, Vec3 foot) {
         return own.supports(x, foot, tool_radius_.length);
       };
@@ -349,7 +349,7 @@ class CellMeasure {
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
     return tool_radius_.inverse * about_center_of_mass;
   }
-  VPM_HD Vec3 relative(Vec3 x) const { return 1 / cell_.reach * (x - center_); }
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / cell_.radius * (x - center_); }
 
   const Surface& surface_;
   const Pose& to_surface_;

@@ -102,13 +102,13 @@ struct ContactPlane {
 struct CutCell {
   ContactPlane plane;
   Vec3 center;
-  double reach = 0;
+  double radius = 0;
 
-  VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / radius * (x - center); }
   // True if a place lies behind the plane, so that the flood may go there.
   VPM_HD bool is_behind(Vec3 x) const { return plane.height(relative(x)) < 0; }
   VPM_HD bool supports(Vec3 x, Vec3 hiding, double near) const {
-    return plane.supports(relative(x), relative(hiding), near / reach);
+    return plane.supports(relative(x), relative(hiding), near / radius);
   }
 };
 
@@ -132,16 +132,17 @@ VPM_HD inline bool is_hidden_cell(double gap_squared, double tool_radius) {
 
 // True if a cell at this squared distance, m^2, from the surface is behind the same sheet as its
 // cut neighbour, by the cells' bounding radii, m. Where false, the cut cell's plane decides.
-VPM_HD inline bool lies_near_sheet(double gap_squared, double cut_reach, double reach) {
-  const double near = kSheetReach * (cut_reach + reach);
+VPM_HD inline bool lies_near_sheet(double gap_squared, double cut_radius, double radius) {
+  const double near = kSheetReach * (cut_radius + radius);
   return gap_squared <= near * near;
 }
 
 // True if the flood enters a cell from a cut neighbour: both are near one sheet, or the neighbour's
 // plane has the cell behind it, which is_behind() tells where it is needed.
 template <class IsBehind>
-VPM_HD bool enters(double gap_squared, double cut_reach, double reach, const IsBehind& is_behind) {
-  return lies_near_sheet(gap_squared, cut_reach, reach) || is_behind();
+VPM_HD bool enters(double gap_squared, double cut_radius, double radius,
+                   const IsBehind& is_behind) {
+  return lies_near_sheet(gap_squared, cut_radius, radius) || is_behind();
 }
 // True if the flood passes a cell behind the surface: it is no further behind than the tool's
 // radius, or the plane of the nearest cut cell has it behind it.

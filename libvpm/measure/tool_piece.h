@@ -97,7 +97,7 @@ struct CellView {
   const CellSample* samples = nullptr;
   std::uint32_t begin = 0, end = 0;  // blocks of the cell
   Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
-  double reach = 0;                  // bounding radius of the cell about `center`, m
+  double radius = 0;                 // bounding radius of the cell about `center`, m
 };
 
 // Describes a compact piece of a cell: a sample, or a block or cell that is taken whole, as if all
@@ -119,7 +119,7 @@ VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellBlock& block) 
   return {mass.centroid, {}, mass.weight, block.radius, block.begin, block.end};
 }
 VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellView& cell) {
-  ToolPiece piece{mass.centroid, {}, mass.weight, cell.reach, 0, 0};
+  ToolPiece piece{mass.centroid, {}, mass.weight, cell.radius, 0, 0};
   if (cell.begin < cell.end) {
     piece.begin = cell.blocks[cell.begin].begin;
     piece.end = cell.blocks[cell.end - 1].end;

@@ -32,10 +32,10 @@ void connect_neighbors(std::uint32_t n, SphereGraph& graph) {
 }
 
 // Puts one leaf level below a root.
-void wrap(std::uint32_t count, double reach, Hierarchy& hierarchy) {
+void wrap(std::uint32_t count, double radius, Hierarchy& hierarchy) {
   hierarchy.leaves.resize(count);
   std::iota(hierarchy.leaves.begin(), hierarchy.leaves.end(), 0u);
-  const Sphere all{{}, reach};
+  const Sphere all{{}, radius};
   constexpr std::uint32_t kChildren = 4;
   hierarchy.nodes.push_back({all, 1, 1 + kChildren, 0, 0});
   for (std::uint32_t k = 0; k < kChildren; ++k) {

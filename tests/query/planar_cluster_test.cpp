@@ -135,9 +135,9 @@ TEST(Patch, CellsThatAreSeenFreeDoNotCount) {
     query.run(cloud, pose);
     for (std::size_t i = 0; i < tool.spheres.size(); ++i) {
       // Adds a tenth, since the rounding of pixels is not tested here.
-      const double reach = 1.1 * tool.levels[0].cell_radius[i];
+      const double radius = 1.1 * tool.levels[0].cell_radius[i];
       const Vec3 center = pose * tool.spheres[i].center;
-      if (!is_seen_free(depth, scene.camera.intrinsics, center, reach)) continue;
+      if (!is_seen_free(depth, scene.camera.intrinsics, center, radius)) continue;
       if (center.z < 1) continue;  // free in front of the wall too
       ++free;
       EXPECT_EQ(query.states()[i], SphereState::outside) << "pose " << k << ", sphere " << i;

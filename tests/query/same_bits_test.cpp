@@ -175,7 +175,7 @@ ToolModel scaled(ToolModel tool, double s) {
       node.bound = {s * node.bound.center, s * node.bound.radius};
     level.grid.low = s * level.grid.low;
     level.grid.cell *= s;
-    for (double& reach : level.cell_radius) reach *= s;
+    for (double& radius : level.cell_radius) radius *= s;
     for (CellBlock& block : level.blocks) stretch(block.center), block.radius *= f;
     for (CellSample& sample : level.samples) stretch(sample.center), sample.radius *= f;
   }

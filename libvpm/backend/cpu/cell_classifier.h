@@ -34,15 +34,15 @@ class CellClassifier {
     const CellGroup& group = work_.level.groups()[index];
     const Vec3 center = work_.to_surface * group.ball.center;
     const bool tells =
-        group.end - group.begin > 1 && tells_of_parts(work_.surface, center, group.ball.reach);
+        group.end - group.begin > 1 && tells_of_parts(work_.surface, center, group.ball.radius);
     BallClass in_ball;
-    if (tells) in_ball = work_.surface.classify_ball(center, group.ball.reach);
+    if (tells) in_ball = work_.surface.classify_ball(center, group.ball.radius);
     const bool is_mixed = tells && sight_of<Surface>(in_ball) == Sight::mixed;
     if (tells && !is_mixed && in_ball.side == Side::free) return set_free(group.ball, in_ball);
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const CellCluster& part = work_.level.cluster(root);
       if (tells && !is_mixed &&
-          is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.reach))
+          is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.radius))
         work_.states.set(part, ClusterClass::free);
       else
         classify(root);
@@ -63,7 +63,7 @@ class CellClassifier {
   void add_free_cell(std::uint32_t i) {
     const CellView cell = work_.level.cell(i);
     const CellMeasure measure = work_.measure_of(cell);
-    if (is_compact(cell.reach, work_.tool_radius.length))
+    if (is_compact(cell.radius, work_.tool_radius.length))
       return measure.add_free(work_.level.mass(i), Sight::mixed, unseen_);
     for (std::uint32_t b = cell.begin; b < cell.end; ++b)
       measure.add_free(cell.masses[b], Sight::mixed, unseen_);
@@ -72,16 +72,16 @@ class CellClassifier {
   void classify(std::uint32_t root) {
     const CellCluster& whole = work_.level.cluster(root);
     const Vec3 center = work_.to_surface * whole.center;
-    const BallClass in_ball = work_.surface.classify_ball(center, whole.reach);
+    const BallClass in_ball = work_.surface.classify_ball(center, whole.radius);
     ClusterClass found =
-        class_of_cluster(work_.surface, in_ball, center, whole.reach, work_.tool_radius.length);
+        class_of_cluster(work_.surface, in_ball, center, whole.radius, work_.tool_radius.length);
     // A flood asks the middle only where it comes.
     if (Surface::kTellsInside && found == ClusterClass::by_middle)
-      found = class_by_middle(work_.surface, work_.surface.sample(center), center, whole.reach,
+      found = class_by_middle(work_.surface, work_.surface.sample(center), center, whole.radius,
                               work_.tool_radius.length);
     if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
-      if (!finds_cluster_plane(work_.surface, in_ball, center, whole.reach,
+      if (!finds_cluster_plane(work_.surface, in_ball, center, whole.radius,
                                work_.tool_radius.length, SampleTogether{}, plane))
         return classify_nodes(root);
       work_.states.planes[root] = {plane, work_.to_surface};
@@ -115,9 +115,9 @@ class CellClassifier {
     while (node < last) {
       const auto& [part, next] = nodes[node];
       const Vec3 center = work_.to_surface * part.center;
-      const BallClass in_ball = work_.surface.classify_ball(center, part.reach);
+      const BallClass in_ball = work_.surface.classify_ball(center, part.radius);
       if (const ClusterClass side =
-              class_of_ball(work_.surface, in_ball, center, part.reach, work_.tool_radius.length);
+              class_of_ball(work_.surface, in_ball, center, part.radius, work_.tool_radius.length);
           side != ClusterClass::ambiguous) {
         if (side == ClusterClass::free)
           set_free(part, in_ball);
@@ -136,8 +136,8 @@ class CellClassifier {
   void classify_cell(std::uint32_t i, SamplesOnHost<Surface>& samples) {
     const CellView view = work_.level.cell(i);
     const Vec3 center = work_.to_surface * view.center;
-    const BallClass in_ball = work_.surface.classify_ball(center, view.reach);
-    const Side side = side_of(work_.surface, in_ball, center, view.reach);
+    const BallClass in_ball = work_.surface.classify_ball(center, view.radius);
+    const Side side = side_of(work_.surface, in_ball, center, view.radius);
     if (side != Side::ambiguous) {
       work_.states.set(i, side);
       if (side == Side::free && sight_of<Surface>(in_ball) != Sight::seen) add_free_cell(i);
@@ -161,13 +161,13 @@ class CellClassifier {
     while (node < last) {
       const auto& [part, next] = nodes[node];
       const PlaneSide side = side_of_plane(plane.distance(part.center),
-                                           part.reach + kRounding * work_.tool_radius.length);
+                                           part.radius + kRounding * work_.tool_radius.length);
       if (side == PlaneSide::before) {
         work_.states.set(part, ClusterClass::free);
         node = next;
       } else if (side == PlaneSide::behind &&
                  !may_hold_free(work_.surface, in_ball, work_.to_surface * part.center,
-                                part.reach)) {
+                                part.radius)) {
         work_.states.set(part, CellClass::uniform, flood_state_of(ClusterClass::cut));
         node = next;
       } else {
@@ -182,11 +182,11 @@ class CellClassifier {
   void classify_clipped(std::uint32_t i, const ClipPlane& plane, const BallClass& in_ball) {
     const CellView view = work_.level.cell(i);
     const Vec3 center = work_.to_surface * view.center;
-    const PlaneSide side = side_in_cut_cluster(plane.distance(view.center), view.reach, [&] {
+    const PlaneSide side = side_in_cut_cluster(plane.distance(view.center), view.radius, [&] {
       return may_be_free(work_.surface, least_inverse_depth<Surface>(in_ball), center,
-                         view.reach) &&
-             side_of(work_.surface, work_.surface.classify_ball(center, view.reach), center,
-                     view.reach) == Side::free;
+                         view.radius) &&
+             side_of(work_.surface, work_.surface.classify_ball(center, view.radius), center,
+                     view.radius) == Side::free;
     });
     if (side == PlaneSide::before) {
       work_.states.set(i, Side::free);

@@ -46,7 +46,7 @@ struct FloodPart {
 // Describes a cluster with cut cells, which are a range of CellStates::cut.
 struct CutCluster {
   Vec3 center;  // about the tool's centre of mass
-  double reach;
+  double radius;
   std::uint32_t begin, end;
 };
 
@@ -184,7 +184,7 @@ class CutCells {
       const std::uint32_t root = level_.root(states_.cut[k]);
       if (root != last) {
         const CellCluster& ball = level_.cluster(root);
-        states_.cut_clusters.push_back({ball.center, ball.reach, k, k});
+        states_.cut_clusters.push_back({ball.center, ball.radius, k, k});
       }
       states_.cut_clusters.back().end = k + 1;
       last = root;
@@ -193,7 +193,8 @@ class CutCells {
   bool are_none() const { return states_.cut.empty(); }
 
   CutCell at(std::uint32_t cut) const {
-    return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center, level_.reach(cut)};
+    return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center,
+            level_.cell_radius(cut)};
   }
   // Returns the cut cell whose sphere's centre is nearest; ties go to the smaller sphere index.
   // Requires one. `last` becomes the result's row, and is a hint before: the last result, or
@@ -203,8 +204,8 @@ class CutCells {
     Nearest nearest(tool_.spheres[level_.sphere(row)].center);
     consider(last != kNoRow ? last : states_.cut.front(), nearest);
     for (const CutCluster& cluster : states_.cut_clusters) {
-      const double reach = kRounding * (std::sqrt(nearest.squared) + cluster.reach) + rounding_;
-      if (squared_norm(cluster.center - from) > reach * reach) continue;
+      const double bound = kRounding * (std::sqrt(nearest.squared) + cluster.radius) + rounding_;
+      if (squared_norm(cluster.center - from) > bound * bound) continue;
       for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) consider(states_.cut[k], nearest);
     }
     last = nearest.row;

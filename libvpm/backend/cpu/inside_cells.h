@@ -74,7 +74,7 @@ class CameraVisibility {
     for (const std::uint32_t i : work_.states.cut) {
       const CutCell cut = cut_.at(i);
       normal += cut.plane.normals();
-      foot += cut.center + cut.reach * cut.plane.mean_foot();
+      foot += cut.center + cut.radius * cut.plane.mean_foot();
     }
     foot = 1 / static_cast<double>(work_.states.cut.size()) * foot;
     return {to_world_.rotation * normalized_or_zero(normal), to_world_ * foot};
@@ -276,7 +276,7 @@ class InsideFlood {
     const Vec3 at = work_.to_surface * cluster.center;
     const SurfaceSample middle = work_.surface.sample(at);
     const ClusterClass found =
-        class_by_middle(work_.surface, middle, at, cluster.reach, work_.tool_radius.length);
+        class_by_middle(work_.surface, middle, at, cluster.radius, work_.tool_radius.length);
     if (found == ClusterClass::uniform)
       work_.push(cluster, root, middle);
     else
@@ -298,7 +298,8 @@ class InsideFlood {
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {
-    return vpm::enters(squared_gap_of(row), work_.level.reach(cut), work_.level.reach(row),
+    return vpm::enters(squared_gap_of(row), work_.level.cell_radius(cut),
+                       work_.level.cell_radius(row),
                        [&] { return cut_.at(cut).is_behind(work_.center(row)); });
   }
   double squared_gap_of(std::uint32_t row) {

@@ -54,7 +54,7 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
       CellGroup& last = groups_.back();
       const CellCluster ball =
           enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
-      if (ball.reach <= kGroupReach * tool.radius) {
+      if (ball.radius <= kGroupReach * tool.radius) {
         last.ball = ball;
         last.end = root + 1;
         continue;
@@ -62,7 +62,7 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
     }
     groups_.push_back({nodes_[roots_[root]].cluster, root, root + 1});
   }
-  for (CellGroup& group : groups_) group.ball.reach *= kGroupRounding;
+  for (CellGroup& group : groups_) group.ball.radius *= kGroupRounding;
 }
 
 void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
@@ -86,7 +86,7 @@ void SpatialLevel::add_weights(double tool_radius) {
   weights_.push_back(all);
   for (std::uint32_t row = 0; row < size(); ++row) {
     const Cell& cell = cells_[row];
-    if (is_compact(cell.reach, tool_radius)) {
+    if (is_compact(cell.radius, tool_radius)) {
       all.add(masses_[row].weight);
     } else {
       for (std::uint32_t b = cell.begin; b < cell.end; ++b) all.add(block_masses_[b].weight);

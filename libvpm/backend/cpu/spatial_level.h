@@ -31,9 +31,9 @@ class SpatialLevel {
   CellView cell(std::uint32_t row) const {
     const Cell& row_cell = cells_[row];
     return {blocks_.data(), block_masses_.data(), samples_.data(), row_cell.begin,
-            row_cell.end,   row_cell.center,      row_cell.reach};
+            row_cell.end,   row_cell.center,      row_cell.radius};
   }
-  double reach(std::uint32_t row) const { return cells_[row].reach; }
+  double cell_radius(std::uint32_t row) const { return cells_[row].radius; }
   // Return where a list of pieces (samples and blocks) of each row begins that has room for all of
   // the row, and the length of all these lists.
   std::size_t first_piece(std::uint32_t row) const {
@@ -59,7 +59,7 @@ class SpatialLevel {
  private:
   struct Cell {
     Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
-    double reach = 0;                  // bounding radius of the cell, m
+    double radius = 0;                 // bounding radius of the cell, m
     std::uint32_t begin = 0, end = 0;  // blocks
   };
 

@@ -24,7 +24,7 @@ class WholeCells {
 
   void add(std::uint32_t row) {
     const CellView cell = work_.level.cell(row);
-    const bool compact = is_compact(cell.reach, work_.tool_radius.length);
+    const bool compact = is_compact(cell.radius, work_.tool_radius.length);
     const CellClass found = std::exchange(work_.states.cells[row], CellClass::free);
     if (whole_part(compact, true, false) == WholePart::cell)
       return add({row, found}, piece_of(work_.level.mass(row), cell));

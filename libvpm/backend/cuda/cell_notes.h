@@ -278,7 +278,7 @@ class CutCells {
     }
   }
   __device__ CutCell at(std::uint32_t cut) const {
-    return {notes_.planes[cut], to_surface_ * level_.centers[cut], level_.reach[cut]};
+    return {notes_.planes[cut], to_surface_ * level_.centers[cut], level_.cell_radius[cut]};
   }
   // Returns the nearest cut cell, or level.count if there is none; ties go to the smaller index.
   // Call from all lanes of a subwarp.

@@ -33,7 +33,7 @@ void add_groups(const CellCluster& cluster, std::span<const WarpTask> some, std:
     const std::span<const WarpTask> these = some.first(std::min(at_once, some.size()));
     const auto begin = static_cast<std::uint32_t>(out.tasks.size());
     out.tasks.insert(out.tasks.end(), these.begin(), these.end());
-    out.groups.push_back({{cluster.center, cluster.reach},
+    out.groups.push_back({{cluster.center, cluster.radius},
                           begin,
                           begin + static_cast<std::uint32_t>(these.size()),
                           weight_of(these)});
@@ -88,13 +88,13 @@ class LevelTasks {
  private:
   void add_tasks(std::uint32_t cell, std::vector<WarpTask>& tasks) const {
     const Vec3 center = tool_.spheres[cell].center - tool_.center_of_mass;
-    const double reach = level_.cell_radius[cell];
+    const double radius = level_.cell_radius[cell];
     const std::uint32_t begin = level_.block_begin[cell], end = level_.block_begin[cell + 1];
     WarpTask task;
-    task.balls[BlockTask::of_cell] = {center, reach};
+    task.balls[BlockTask::of_cell] = {center, radius};
     task.cell_mass = clusters_.masses[cell];
     task.cell = cell;
-    if (is_compact(reach, tool_.radius)) task.flags |= BlockTask::is_compact;
+    if (is_compact(radius, tool_.radius)) task.flags |= BlockTask::is_compact;
     const std::size_t head = tasks.size();
     if (begin == end) tasks.push_back(task);
     for (std::uint32_t b = begin; b < end; ++b) {
@@ -170,7 +170,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, Shadows shad
       static_cast<std::uint32_t>(level.samples.size() + level.blocks.size() + level.sphere_count);
   view_.spheres = memory_.copy(tool.spheres.data(), level.sphere_count);
   view_.centers = memory_.copy(centers_of(tool, level));
-  view_.reach = memory_.copy(level.cell_radius);
+  view_.cell_radius = memory_.copy(level.cell_radius);
   view_.block_begin = memory_.copy(level.block_begin);
   view_.blocks = memory_.copy(level.blocks);
   view_.samples = memory_.copy(level.samples);

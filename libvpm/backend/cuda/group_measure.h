@@ -132,7 +132,7 @@ class GroupMeasure {
     const unsigned begin =
         clipped ? MeasureShared::kSeen - count - atomicAdd(&shared_.clipped_count, count)
                 : atomicAdd(&shared_.seen_count, count);
-    for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = SeenTask::of(slot, u, seen);
+    for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = PendingTask::of(slot, u, seen);
   }
   __device__ PlanarCluster& planar_cluster_of(unsigned slot) const {
     return work_.space.planar_clusters[work_.part.part * blockDim.x + slot];
@@ -222,7 +222,7 @@ class GroupMeasure {
   }
 
   // Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
-  __device__ void classify(SeenTask seen, bool active) {
+  __device__ void classify(PendingTask seen, bool active) {
     const Subwarp lanes(kLanes);
     const BlockTask& task = work_.level.block_tasks[shared_.first_tasks[seen.slot()] + seen.task()];
     const TaskBall ball = task.balls[min(lanes.lane, BlockTask::kBalls - 1U)];
@@ -272,7 +272,7 @@ class GroupMeasure {
   }
 
   // Classifies one block task of a cut cluster by all lanes of a subwarp.
-  __device__ void classify_clipped(SeenTask seen, const Subwarp& lanes) {
+  __device__ void classify_clipped(PendingTask seen, const Subwarp& lanes) {
     const BlockTask& task = work_.level.block_tasks[shared_.first_tasks[seen.slot()] + seen.task()];
     const PlanarCluster& planar = planar_cluster_of(seen.slot());
     const ClipPlane plane = planar.plane;

@@ -134,7 +134,7 @@ class ImageTaskGroup {
   __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
   __device__ Measure measure_of_cell() const {
     const TaskBall& cell = task_.balls[kOfCell];
-    return work_.measure_of({.center = cell.center, .reach = cell.radius});
+    return work_.measure_of({.center = cell.center, .radius = cell.radius});
   }
   // True for all lanes of a task if `value` is true for any of them.
   __device__ bool any(bool value) const {

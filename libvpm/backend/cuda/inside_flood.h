@@ -347,7 +347,7 @@ class Flood {
   }
 
   __device__ bool enters(std::uint32_t cut, std::uint32_t i) const {
-    return vpm::enters(space_.gaps[i], level_.reach[cut], level_.reach[i],
+    return vpm::enters(space_.gaps[i], level_.cell_radius[cut], level_.cell_radius[i],
                        [&] { return lies_behind(cut, i); });
   }
 

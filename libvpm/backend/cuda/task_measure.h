@@ -47,10 +47,10 @@ struct TaskLists {
 
 // Packs a block task to be classified: its index in its task group, the slot of the threads that
 // classified the group's cluster, and the class of that.
-struct SeenTask {
+struct PendingTask {
   std::uint16_t bits;
 
-  __device__ static SeenTask of(unsigned slot, unsigned task, ClusterClass seen) {
+  __device__ static PendingTask of(unsigned slot, unsigned task, ClusterClass seen) {
     return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | slot << 3 | task)};
   }
   __device__ ClusterClass seen() const { return static_cast<ClusterClass>(bits >> 11); }
@@ -64,8 +64,8 @@ static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGrou
 // Lays out a block's shared memory.
 struct MeasureShared {
   static constexpr unsigned kSeen = kMeasureThreads * TaskGroup::kTasks;
-  SeenTask seen[kSeen];  // from the front those of clusters that are not planar, from the end those
-                         // of cut ones
+  PendingTask seen[kSeen];  // from the front those of clusters that are not planar, from the end
+                            // those of cut ones
   unsigned seen_count, clipped_count;
   std::uint32_t uniform_groups[kMeasureThreads];  // task groups of uniform clusters
   unsigned uniform_count;
@@ -223,7 +223,7 @@ class TaskMeasure {
                                         const Task& task) {
     const ClipPlane plane = clipped.plane;
     const Vec3 center = clipped.center, cell = work_.level.centers[task.cell];
-    const double reach = work_.level.reach[task.cell];
+    const double radius = work_.level.cell_radius[task.cell];
     const CellSample* const samples = work_.level.samples + task.begin;
     CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
     ClippedMoments row;
@@ -239,7 +239,7 @@ class TaskMeasure {
     CellResult result;
     if (subwarp.leads()) {
       if (row.is_cut)
-        work_.measure_of({.center = cell, .reach = reach})
+        work_.measure_of({.center = cell, .radius = radius})
             .add_to_plane(center, plane, result.plane);
       add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_radius, result.sum);
     }
@@ -251,7 +251,7 @@ class TaskMeasure {
     const std::uint32_t i = task.cell;
     const Measure measure = work_.measure_of({.samples = work_.level.samples,
                                               .center = work_.level.centers[i],
-                                              .reach = work_.level.reach[i]});
+                                              .radius = work_.level.cell_radius[i]});
     CellResult result;
     for (std::uint32_t begin = 0; begin < task.count; begin += subwarp.width)
       add_piece(subwarp, measure, task, begin + subwarp.lane, result);

@@ -77,8 +77,8 @@ struct LevelView {
   std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // count: spheres
   std::uint32_t piece_count = 0;  // samples, blocks and cells: bounds what a query finds
   const Sphere* spheres = nullptr;
-  const Vec3* centers = nullptr;  // the spheres' centres, about the tool's centre of mass, m
-  const double* reach = nullptr;  // bounding radii of the cells, m
+  const Vec3* centers = nullptr;        // the spheres' centres, about the tool's centre of mass, m
+  const double* cell_radius = nullptr;  // bounding radii of the cells, m
   const std::uint32_t* block_begin = nullptr;
   const CellBlock* blocks = nullptr;
   const BlockMass* block_masses = nullptr;
@@ -92,8 +92,8 @@ struct LevelView {
   ToolRadius tool_radius;
 
   VPM_HD CellView cell(std::uint32_t i) const {
-    return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
-            centers[i], reach[i]};
+    return {blocks,     block_masses,  samples, block_begin[i], block_begin[i + 1],
+            centers[i], cell_radius[i]};
   }
 };
 
