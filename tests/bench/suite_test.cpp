@@ -45,7 +45,7 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
   refuses(
       "timing", [](SuiteOptions& o) { o.all = true; }, "accuracy, packing, scaling");
   refuses(
-      "accuracy", [](SuiteOptions& o) { o.meshes = "folder"; }, "packing");
+      "accuracy", [](SuiteOptions& o) { o.meshes = "folder"; }, "packing, pairs");
   refuses(
       "extremes", [](SuiteOptions& o) { o.data = "folder"; }, "accuracy, replay, timing");
   refuses(
@@ -91,6 +91,20 @@ TEST(Extremes, AreRightOrRefused) {
     if (result.contains("message")) {
       EXPECT_GT(result["message"].get<std::string>().size(), 20U);
     }
+  }
+  EXPECT_EQ(report.failure, "");
+}
+
+// Every pair of the suite closes and is right, and each is timed.
+TEST(Pairs, ShareTheTrueVolume) {
+  SuiteOptions options;
+  options.quick = true;
+  const Report report = run_suite("pairs", options);
+  EXPECT_GE(report.results.size(), 10U);
+  for (const nlohmann::json& result : report.results) {
+    EXPECT_LE(result["volume_error"].get<double>(), 1e-6) << result;
+    EXPECT_LE(result["closure"].get<double>(), 1e-8) << result;
+    EXPECT_GT(result["us"]["5 %"]["force"]["median"].get<double>(), 0) << result;
   }
   EXPECT_EQ(report.failure, "");
 }

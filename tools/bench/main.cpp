@@ -27,8 +27,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--all", a.all,
                "accuracy: take every tool, scene and kind of cloud; packing, scaling: go up to a "
                "million spheres");
-  app.add_option("--meshes", a.meshes,
-                 "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply")
+  app.add_option(
+         "--meshes", a.meshes,
+         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply; pairs: of those "
+         "and spot.obj, as far as they are there")
       ->option_text("FOLDER");
   app.add_option("--data", a.data,
                  "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; "

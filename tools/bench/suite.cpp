@@ -25,6 +25,7 @@ constexpr Suite kSuites[] = {
     {"accuracy", run_accuracy, kAll | kData | kSeed | kOccluded, Place::either},
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
+    {"pairs", run_pairs, kMeshes},
     {"replay", run_replay, kData, Place::either},
     {"scaling", run_scaling, kAll, Place::device},
     {"timing", run_timing, kData},

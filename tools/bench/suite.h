@@ -20,7 +20,8 @@ struct SuiteOptions {
   // accuracy: every tool, scene and kind of cloud; packing, scaling: a million spheres
   bool all = false;
   std::function<void(double fraction)> progress;
-  std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
+  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply; pairs: those that are there
+  std::string meshes = {};
   // accuracy --all, timing: folder of recorded depth images; replay: the same, or a recording
   std::string data = {};
   static constexpr std::uint64_t kUsualNoise = 1;
@@ -57,6 +58,10 @@ Report run_tradeoff(const SuiteOptions& options);
 // Compares packings with greedy packers on voxels, and measures growth and the cost from 10^2 to
 // 10^5 spheres (10^6 with `all`).
 Report run_packing(const SuiteOptions& options);
+
+// Compares pairs of solids with the truth and times them. Sets `failure` where a volume is wrong by
+// more than a millionth of the smaller solid.
+Report run_pairs(const SuiteOptions& options);
 
 // Runs a haptic loop on a recorded stream: queries of warm and cold clouds beside hand-written
 // alternatives, coherent poses, preparation of frames, a path through the stream, a soak of 10^6
