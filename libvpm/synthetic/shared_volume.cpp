@@ -58,13 +58,14 @@ void keep(const Polygon& polygon, const Function& f, Polygon& kept) {
   }
 }
 
-// Integrates the top of a column above `base` over a polygon.
-double prism(const Polygon& polygon, const Column& column, double base) {
+// Integrates a function that is linear over a polygon.
+template <class Function>
+double prism(const Polygon& polygon, const Function& f) {
   double sum = 0;
   for (std::size_t k = 2; k < polygon.size(); ++k) {
     const Vec3 p = polygon[0], q = polygon[k - 1], r = polygon[k];
     const double twice = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-    sum += twice / 6 * (column.top(p) + column.top(q) + column.top(r) - 3 * base);
+    sum += twice / 6 * (f(p) + f(q) + f(r));
   }
   return sum;
 }
@@ -84,12 +85,11 @@ class SharedColumns {
       std::swap(shadow_, part_);
     }
     if (shadow_.size() < 3) return 0;
-    keep(
-        shadow_, [&](Vec3 x) { return t.top(x) - s.top(x); }, part_);
-    double sum = prism(part_, s, base_);
-    keep(
-        shadow_, [&](Vec3 x) { return s.top(x) - t.top(x); }, part_);
-    sum += prism(part_, t, base_);
+    const auto excess = [&](Vec3 x) { return s.top(x) - t.top(x); };
+    double sum = prism(shadow_, [&](Vec3 x) { return s.top(x) - base_; });
+    // Subtracts what is above the other's top, which is nothing where both agree but for rounding.
+    keep(shadow_, excess, part_);
+    sum -= prism(part_, excess);
     return s.sign * t.sign * sum;
   }
 
