@@ -22,10 +22,13 @@ struct CrossedTriangle {
   WideVec3 mean;
   std::array<WideSum, 6> products;
   int entries = 0;  // of edge b-c: how often it enters less how often it leaves
-  bool is_last_edge_crossed = false;
   // Depth below the other's triangles that cross this one, weighted by the segments' lengths.
+  // Large triangles, which are cut into cells for that, keep their segments and crossings instead.
   WideVec3 plane_normal;
   WideSum plane_offset, weight;
+  static constexpr std::uint32_t kEnd = 0xffffffffu;
+  std::uint32_t last_segment = kEnd, last_point = kEnd;  // of the pair's lists
+  bool is_large = false;
 
   void add(double sign, Vec3 p, Vec3 q) {
     const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
@@ -36,10 +39,12 @@ struct CrossedTriangle {
   }
   void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
   void add_edge_crossing(const EdgeCrossing& crossing, Vec3 place) {
-    if (crossing.edge != 1) return;
-    is_last_edge_crossed = true;
-    entries += crossing.sign;
-    add(-crossing.sign, corner[1], place);
+    if (crossing.edge == 1) add_far_point(crossing.sign, place);
+  }
+  // Adds a crossing of edge b-c.
+  void add_far_point(int sign, Vec3 place) {
+    entries += sign;
+    add(-sign, corner[1], place);
   }
   void add_corner_inside() { add(1, corner[1], corner[2]); }
   // Adds a plane of the other surface, n.x = offset, met along a segment of this length.

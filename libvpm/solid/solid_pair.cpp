@@ -48,12 +48,7 @@ SolidPair::SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<cons
       second_(first_ == a ? b : a),
       is_turned_(first_ != a),
       are_twins_(key_of(*a) == key_of(*b)),
-      triangles_(*first_, *second_, SurfacePair::Over::triangles) {
-  const bool have_depth = first_->has_depth() && second_->has_depth();
-  if (have_depth &&
-      (&first_->facets() != &first_->tree() || &second_->facets() != &second_->tree()))
-    facets_.emplace(*first_, *second_, SurfacePair::Over::facets);
-}
+      surfaces_(*first_, *second_) {}
 
 SolidPair::Order SolidPair::order(const Pose& pose_a, const Pose& pose_b) const {
   const bool turned = are_twins_ ? key_of(pose_b) < key_of(pose_a) : is_turned_;
@@ -69,12 +64,11 @@ double SolidPair::closure(const SurfacePairSums& sums) const {
 }
 
 // Sums with one jitter after the other until the boundary closes.
-SurfacePairSums SolidPair::sums(SurfacePair& pair, const Pose& relative, bool with_force,
-                                SharedSolid& shared) {
+SurfacePairSums SolidPair::sums(const Pose& relative, bool with_force, SharedSolid& shared) {
   double worst = 0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const SurfacePairSums found =
-        pair.run(relative * small_motion(attempt, first_->reach()), with_force);
+        surfaces_.run(relative * small_motion(attempt, first_->reach()), with_force);
     ++shared.attempts;
     const double gap = closure(found);
     worst = std::max(worst, gap);
@@ -97,15 +91,12 @@ SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with
   SharedSolid shared;
   const double apart = norm(relative.translation);
   if (apart > (1 + 1e-9) * (first_->reach() + second_->reach())) return shared;
-  const SurfacePairSums found = sums(triangles_, relative, with_force && !facets_, shared);
+  const SurfacePairSums found = sums(relative, with_force, shared);
   const SurfaceMoments &m = found.inner[0].moments, &n = found.inner[1].moments;
   shared.volume = std::max((m.flux() + n.flux()) / 3, 0.0);
   if (shared.volume == 0) return shared;
-  const SurfacePairSums over_facets =
-      with_force && facets_ ? sums(*facets_, relative, true, shared) : found;
-
   const Vec3 centroid = 0.25 / shared.volume * (m.first + n.first);
-  const InnerSurface &f = over_facets.inner[0], &g = over_facets.inner[1];
+  const InnerSurface &f = found.inner[0], &g = found.inner[1];
   const double v = first_->volume(), w = second_->volume();
   // Each solid's depth counts by the square of its volume: a half-space's alone, twins' by half.
   const double of_second = w * w / (v * v + w * w), of_first = v * v / (v * v + w * w);

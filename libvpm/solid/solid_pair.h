@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/surface_pair.h"
@@ -50,15 +49,13 @@ class SolidPair {
     Pose first, second;
   };
   Order order(const Pose& pose_a, const Pose& pose_b) const;
-  SurfacePairSums sums(SurfacePair& pair, const Pose& relative, bool with_force,
-                       SharedSolid& shared);
+  SurfacePairSums sums(const Pose& relative, bool with_force, SharedSolid& shared);
   double closure(const SurfacePairSums& sums) const;
 
   std::shared_ptr<const SolidSurface> first_, second_;  // in the one order
   bool is_turned_ = false;  // a is the second; twins are ordered by their poses
   bool are_twins_ = false;
-  SurfacePair triangles_;
-  std::optional<SurfacePair> facets_;  // where forces are over others than the triangles
+  SurfacePair surfaces_;
 };
 
 }  // namespace vpm

@@ -7,16 +7,11 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/weld.h"
-#include "libvpm/solid/facets.h"
 
 namespace vpm {
 namespace {
 
 constexpr int kGridCells = 64;
-// Longest edge of facets, relative to the reach: depth is taken for linear over a piece of them.
-constexpr double kFacet = 0.12;
-// Largest number of facets, relative to the triangles, that replace these for the volume too.
-constexpr double kFewFacets = 1.25;
 // The grid tells depths of this many of its cells and more; smaller ones are distances to the
 // closest point, since the grid is wrong by a cell or two near the surface.
 constexpr double kNearCells = 1.5;
@@ -66,17 +61,7 @@ SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
     v = place + kJitter * reach_ * jitter_at(std::ldexp(1.0, -exponent) * place);
   }
   hash_ = content_hash(surface);
-  Solid facets = with_depth ? cut_into_facets(surface, kFacet * reach_) : Solid{};
-  // A few large triangles more are measured as facets at once.
-  if (static_cast<double>(facets.triangles.size()) <=
-          kFewFacets * static_cast<double>(surface.triangles.size()) &&
-      with_depth)
-    surface = std::move(facets), facets = {};
-  const bool has_large = facets.triangles.size() > surface.triangles.size();
-  if (has_large)
-    facets_ = std::make_unique<SurfaceTree>(facets.vertices, facets.triangles, reach_, true);
-  tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_,
-                                        with_depth && !has_large);
+  tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_, with_depth);
   inside_ = std::make_unique<InsideIndex>(tree_->vertices(), tree_->triangles());
   volume_ = tree_->summaries()[0].moments.flux() / 3;
   if (with_depth) prepare_depth();
@@ -126,7 +111,6 @@ SphereState SolidSurface::state_of(Vec3 center, double radius) const {
 
 std::size_t SolidSurface::bytes() const {
   std::size_t sum = tree_->bytes() + inside_->bytes();
-  if (facets_) sum += facets_->bytes();
   if (grid_) sum += grid_->bytes();
   if (closest_)
     sum += closest_->nodes().size() * sizeof closest_->nodes()[0] +

@@ -33,8 +33,6 @@ class SolidSurface {
   Vec3 center_of_mass() const { return center_; }     // in the mesh's frame, m
   double reach() const { return reach_; }             // largest distance of a vertex from it, m
   const SurfaceTree& tree() const { return *tree_; }  // of the triangles
-  // Returns the tree of facets, for forces: that of the triangles where these are small.
-  const SurfaceTree& facets() const { return facets_ ? *facets_ : *tree_; }
   bool has_depth() const { return grid_.has_value(); }
   const std::string& hash() const { return hash_; }  // of the surface; orders pairs
   std::size_t triangles() const { return tree_->triangles().size(); }
@@ -57,7 +55,7 @@ class SolidSurface {
   double volume_ = 0, reach_ = 0;
   Vec3 center_;
   std::string hash_;
-  std::unique_ptr<SurfaceTree> tree_, facets_;
+  std::unique_ptr<SurfaceTree> tree_;
   std::unique_ptr<InsideIndex> inside_;
   std::unique_ptr<TriangleBvh> closest_;
   std::optional<DepthGrid> grid_;

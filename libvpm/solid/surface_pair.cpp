@@ -11,6 +11,8 @@ constexpr std::uint32_t kLeaf = SurfaceTree::kLeaf, kNone = SurfaceTree::kNone;
 // Pieces of a surface over which the depth is taken for linear: their radius relative to the reach,
 // and half their slab's thickness relative to the depth.
 constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5;
+// Longest edge, relative to the reach, of triangles and cells of triangles for which that holds.
+constexpr double kCell = 0.12;
 // Planes that cross a triangle stand for the depth below them if their mean normal is so long;
 // where they disagree there is a crease.
 constexpr double kAgreeing2 = 0.97;
@@ -29,12 +31,12 @@ double unit_for(double reach, double other_reach) {
 
 }  // namespace
 
-SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second, Over over)
+SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     : unit_(unit_for(first.reach(), second.reach())), per_unit_(1 / unit_) {
   for (std::size_t k = 0; k < 2; ++k) {
     Role& role = roles_[k];
     role.solid = k == 0 ? &first : &second;
-    role.tree = over == Over::facets ? &role.solid->facets() : &role.solid->tree();
+    role.tree = &role.solid->tree();
     const std::size_t triangles = role.tree->triangles().size();
     role.crossed_stamp.assign(triangles, 0);
     role.crossed_place.assign(triangles, 0);
@@ -70,7 +72,7 @@ void SurfacePair::start(const Pose& pose, bool with_force) {
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
   for (Role& role : roles_) {
-    role.crossed.clear();
+    role.crossed.clear(), role.segments.clear(), role.points.clear();
     role.cut = role.whole = {};
     role.cut_wrench = role.whole_wrench = {};
   }
@@ -108,8 +110,34 @@ void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triang
   }
   if (!with_force_) return;
   const double length = norm(end - start);
-  of_a.add_plane(of_b.normal, dot(of_b.normal, of_b.corner[0]), length);
-  of_b.add_plane(of_a.normal, dot(of_a.normal, of_a.corner[0]), length);
+  const auto place_of = [](const Role& role, const CrossedTriangle& t) {
+    return role.crossed_place[t.triangle];
+  };
+  if (of_a.is_large)
+    keep_cuts(roles_[0], of_a, {start, end, place_of(roles_[1], of_b)},
+              std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
+  else
+    of_a.add_plane(of_b.normal, dot(of_b.normal, of_b.corner[0]), length);
+  if (of_b.is_large)
+    keep_cuts(roles_[1], of_b, {end, start, place_of(roles_[0], of_a)},
+              std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
+  else
+    of_b.add_plane(of_a.normal, dot(of_a.normal, of_a.corner[0]), length);
+}
+
+bool SurfacePair::is_large(const Role& role, std::uint32_t triangle) const {
+  return role.tree->longest_edge(triangle) > kCell * role.solid->reach();
+}
+
+void SurfacePair::keep_cuts(Role& role, CrossedTriangle& triangle, const CutSegment& segment,
+                            std::span<const EdgeCrossing> crossings) {
+  role.segments.emplace_back(segment, triangle.last_segment);
+  triangle.last_segment = static_cast<std::uint32_t>(role.segments.size() - 1);
+  for (const EdgeCrossing& at : crossings) {
+    const CutPoint point{per_unit_ * at.place, at.sign, static_cast<std::size_t>(at.edge)};
+    role.points.emplace_back(point, triangle.last_point);
+    triangle.last_point = static_cast<std::uint32_t>(role.points.size() - 1);
+  }
 }
 
 CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
@@ -121,6 +149,7 @@ CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
     added.triangle = triangle;
     for (std::size_t k = 0; k < 3; ++k) added.corner[k] = per_unit_ * at.corner[k];
     added.normal = normalized_or_zero(at.normal);
+    added.is_large = with_force_ && is_large(role, triangle);
   }
   return role.crossed[role.crossed_place[triangle]];
 }
@@ -162,7 +191,11 @@ void SurfacePair::add_crossed(std::size_t which) {
       triangle.add_corner_inside();
     role.cut.add(flat_moments(triangle.normal, triangle.area.real(), triangle.mean.real(),
                               triangle.products_real()));
-    if (with_force_) add_force_of_cut(which, triangle);
+    if (!with_force_) continue;
+    if (triangle.is_large)
+      add_force_of_cells(which, triangle);
+    else
+      add_force_of_cut(which, triangle);
   }
 }
 
@@ -261,6 +294,15 @@ void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
 void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangle) {
   Role& role = roles_[which];
   const auto [a, b, c] = role.tree->corners(triangle);
+  if (is_large(role, triangle)) {
+    const PlacedTriangle at = placed(role, triangle);
+    DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
+    for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
+    const Vec3 normal = normalized_or_zero(at.normal);
+    cells_.run(cell, normal, kCell * role.solid->reach() * per_unit_,
+               [&](const DepthCell& part) { add_force_of_cell(which, part, normal); });
+    return;
+  }
   const Vec3 middle = (a + b + c) / 3;
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
@@ -271,27 +313,72 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   role.whole_wrench.torque.add(unit3 * per_unit_ * f.torque);
 }
 
+// Adds the force on the part of a large crossed triangle, cell by cell.
+void SurfacePair::add_force_of_cells(std::size_t which, const CrossedTriangle& triangle) {
+  Role& role = roles_[which];
+  cut_segments_.clear(), cut_points_.clear();
+  for (std::uint32_t k = triangle.last_segment; k != CrossedTriangle::kEnd;
+       k = role.segments[k].second)
+    cut_segments_.push_back(role.segments[k].first);
+  for (std::uint32_t k = triangle.last_point; k != CrossedTriangle::kEnd; k = role.points[k].second)
+    cut_points_.push_back(role.points[k].first);
+  DepthCell cell{triangle.corner, {}, cut_segments_, cut_points_};
+  for (std::size_t k = 0; k < 3; ++k)
+    cell.is_inside[k] = is_inside(which, role.tree->triangles()[triangle.triangle][k]) ? 1 : 0;
+  cells_.run(cell, triangle.normal, kCell * role.solid->reach() * per_unit_,
+             [&](const DepthCell& part) { add_force_of_cell(which, part, triangle.normal); });
+}
+
+void SurfacePair::add_force_of_cell(std::size_t which, const DepthCell& cell, Vec3 normal) {
+  const auto& [a, b, c] = cell.corner;
+  if (cell.is_whole()) {
+    const Vec3 place = (a + b + c) / 3;
+    add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, place), place);
+    return;
+  }
+  CrossedTriangle part;
+  part.corner = cell.corner, part.normal = normal;
+  for (const auto& [start, end, number] : cell.segments) {
+    part.add_segment(start, end);
+    const CrossedTriangle& other = roles_[1 - which].crossed[number];
+    part.add_plane(other.normal, dot(other.normal, other.corner[0]), norm(end - start));
+  }
+  for (const CutPoint& point : cell.points)
+    if (point.edge == 1) part.add_far_point(point.sign, point.place);
+  if (cell.is_inside[2] != 0) part.add_corner_inside();
+  add_force_of_cut(which, part);
+}
+
+// Returns the depth below the other's surface at a place in the first's frame; in the unit.
+Depth SurfacePair::depth_at(std::size_t which, Vec3 place) {
+  const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
+  Depth depth = roles_[1 - which].solid->depth(to_other * (unit_ * place));
+  ++sums_.depths;
+  depth.value *= per_unit_;
+  depth.gradient = transpose(to_other.rotation) * depth.gradient;
+  return depth;
+}
+
+void SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments, const Depth& depth,
+                                Vec3 place) {
+  const ForceAndTorque f = linear_force(moments, depth, place);
+  roles_[which].cut_wrench.force.add(f.force);
+  roles_[which].cut_wrench.torque.add(f.torque);
+}
+
 // Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
 // closest point where these disagree.
 void SurfacePair::add_force_of_cut(std::size_t which, const CrossedTriangle& triangle) {
-  Role& role = roles_[which];
   const double weight = triangle.weight.real(), area = triangle.area.real();
   if (!(weight > 0)) return;
   const Vec3 normal = triangle.plane_normal.real() / weight;
   Vec3 place;
   Depth depth{triangle.plane_offset.real() / weight, -normal};
   if (squared_norm(normal) < kAgreeing2 && area > 0) {
-    const SolidSurface& other = *roles_[1 - which].solid;
     place = triangle.mean.real() / area;
-    const Pose to_other = which == 0 ? role.to_other : Pose{};
-    depth = other.depth(to_other * (unit_ * place));
-    ++sums_.depths;
-    depth.value *= per_unit_;
-    depth.gradient = transpose(to_other.rotation) * depth.gradient;
+    depth = depth_at(which, place);
   }
-  const ForceAndTorque f = linear_force(triangle.moments(), depth, place);
-  role.cut_wrench.force.add(f.force);
-  role.cut_wrench.torque.add(f.torque);
+  add_cut_force(which, triangle.moments(), depth, place);
 }
 
 }  // namespace vpm

@@ -3,9 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "libvpm/solid/crossed_triangle.h"
+#include "libvpm/solid/depth_cells.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
 #include "libvpm/solid/wide_sum.h"
@@ -26,12 +29,11 @@ struct SurfacePairSums {
   std::size_t candidates = 0, crossings = 0, depths = 0;
 };
 
-// Scratch of a pair of surfaces at changing poses, over their triangles or over their facets.
-// Belongs to one thread. The surfaces must outlive it.
+// Scratch of a pair of surfaces at changing poses. Belongs to one thread. The surfaces must outlive
+// it.
 class SurfacePair {
  public:
-  enum class Over { triangles, facets };
-  SurfacePair(const SolidSurface& first, const SolidSurface& second, Over over);
+  SurfacePair(const SolidSurface& first, const SolidSurface& second);
 
   // Sums at a pose, which maps the second's frame to the first's. Allocates nothing once its lists
   // have grown. The order of triangles changes no bit of the sums.
@@ -44,6 +46,9 @@ class SurfacePair {
     const SurfaceTree* tree = nullptr;
     Pose to_first, to_other;  // from its own frame
     std::vector<CrossedTriangle> crossed;
+    // What cuts the large ones: each entry names the one before of the same triangle.
+    std::vector<std::pair<CutSegment, std::uint32_t>> segments;
+    std::vector<std::pair<CutPoint, std::uint32_t>> points;
     std::vector<std::uint32_t> crossed_stamp, crossed_place;  // of triangles
     std::vector<std::uint32_t> node_stamp;                    // nodes above a crossed triangle
     std::vector<std::uint32_t> corner_stamp;                  // vertices whose side is known
@@ -64,12 +69,22 @@ class SurfacePair {
   void add_whole_triangle(std::size_t role, std::uint32_t triangle);
   void add_force(std::size_t role, std::uint32_t node);
   void add_force_of_triangle(std::size_t role, std::uint32_t triangle);
+  bool is_large(const Role& role, std::uint32_t triangle) const;
+  void keep_cuts(Role& role, CrossedTriangle& triangle, const CutSegment& segment,
+                 std::span<const EdgeCrossing> crossings);
+  void add_force_of_cells(std::size_t role, const CrossedTriangle& triangle);
+  void add_force_of_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
   void add_force_of_cut(std::size_t role, const CrossedTriangle& triangle);
+  Depth depth_at(std::size_t role, Vec3 place);
+  void add_cut_force(std::size_t role, const ForceMoments& moments, const Depth& depth, Vec3 place);
   InnerSurface result(const Role& role) const;
 
   std::array<Role, 2> roles_;
   TreeWalk walk_;
   std::vector<std::uint32_t> pending_, patches_;  // nodes
+  DepthCells cells_;
+  std::vector<CutSegment> cut_segments_;  // of one triangle
+  std::vector<CutPoint> cut_points_;
   std::uint32_t stamp_ = 0;
   double unit_, per_unit_;  // m, a power of two that no coordinate exceeds, and its inverse
   bool with_force_ = false;
