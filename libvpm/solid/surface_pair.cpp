@@ -72,6 +72,7 @@ void SurfacePair::start(const Pose& pose, bool with_force) {
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
   for (Role& role : roles_) {
+    role.placed_last = kNone;
     role.crossed.clear(), role.segments.clear(), role.points.clear();
     role.cut = role.whole = {};
     role.cut_wrench = role.whole_wrench = {};
@@ -86,10 +87,19 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
   return {corners, role.tree->triangles()[triangle], normal, role.tree->longest_edge(triangle)};
 }
 
+// Returns placed(), kept from the call before for the same triangle.
+const PlacedTriangle& SurfacePair::placed_again(Role& role, std::uint32_t triangle) {
+  if (role.placed_last != triangle) {
+    role.placed_last = triangle;
+    role.last = placed(role, triangle);
+  }
+  return role.last;
+}
+
 void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triangle) {
   ++sums_.candidates;
-  const PlacedTriangle a = placed(roles_[0], first_triangle),
-                       b = placed(roles_[1], second_triangle);
+  const PlacedTriangle &a = placed_again(roles_[0], first_triangle),
+                       &b = placed_again(roles_[1], second_triangle);
   TriangleCrossing crossing;
   const Meeting meeting = cross_triangles(a, b, crossing);
   if (meeting == Meeting::undecided) ++sums_.undecided;

@@ -44,7 +44,9 @@ class SurfacePair {
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
-    Pose to_first, to_other;  // from its own frame
+    Pose to_first, to_other;                         // from its own frame
+    std::uint32_t placed_last = SurfaceTree::kNone;  // triangle
+    PlacedTriangle last;
     std::vector<CrossedTriangle> crossed;
     // What cuts the large ones: each entry names the one before of the same triangle.
     std::vector<std::pair<CutSegment, std::uint32_t>> segments;
@@ -60,6 +62,7 @@ class SurfacePair {
 
   void start(const Pose& pose, bool with_force);
   PlacedTriangle placed(const Role& role, std::uint32_t triangle) const;
+  const PlacedTriangle& placed_again(Role& role, std::uint32_t triangle);
   void meet(std::uint32_t first_triangle, std::uint32_t second_triangle);
   CrossedTriangle& crossed(Role& role, std::uint32_t triangle, const PlacedTriangle& placed);
   bool is_inside(std::size_t role, std::uint32_t vertex);

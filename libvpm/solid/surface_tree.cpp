@@ -29,6 +29,8 @@ class SurfaceTree::Build {
     for (std::uint32_t t = 0; t < n; ++t) {
       const auto [a, b, c] = tree.corners(t);
       middle_.push_back((a + b + c) / 3);
+      Box& box = bounds_.emplace_back();
+      for (const Vec3& corner : {a, b, c}) box.add(corner);
     }
   }
 
@@ -63,19 +65,73 @@ class SurfaceTree::Build {
     return static_cast<std::uint32_t>(tree_.nodes_.size() - 1);
   }
 
-  // Splits at the median along the longest axis of the triangles' centres; ties by place in the
-  // list, so that the tree is one.
-  std::pair<Range, Range> halves(Range r) {
+  // Where to split a range: along an axis, before a bin of the triangles' centres.
+  struct Split {
+    int axis = -1;  // none
+    int bin = 0;
+    double cost = HUGE_VAL;
+  };
+  static constexpr int kBins = 16;
+
+  static double half_area(const Box& box) {
+    const Vec3 s = box.size();
+    return s.x * s.y + s.y * s.z + s.z * s.x;
+  }
+
+  int bin_of(std::uint32_t triangle, const Box& centers, int axis) const {
+    const double low = coordinate(centers.low, axis), high = coordinate(centers.high, axis);
+    const double part = (coordinate(middle_[triangle], axis) - low) / (high - low);
+    return std::min(static_cast<int>(kBins * part), kBins - 1);
+  }
+
+  // Returns the best split along an axis by the surface area heuristic (MacDonald and Booth 1990),
+  // over bins of centres (Wald 2007).
+  Split best_along(Range r, const Box& centers, int axis) const {
+    if (!(coordinate(centers.size(), axis) > 0)) return {};
+    std::array<Box, kBins> boxes;
+    std::array<int, kBins> counts{};
+    for (std::uint32_t i = r.begin; i < r.end; ++i) {
+      const auto bin = static_cast<std::size_t>(bin_of(order_[i], centers, axis));
+      boxes[bin].add(bounds_[order_[i]].low), boxes[bin].add(bounds_[order_[i]].high);
+      ++counts[bin];
+    }
+    std::array<double, kBins> above{};  // cost of the bins from here on
     Box box;
-    for (std::uint32_t i = r.begin; i < r.end; ++i) box.add(middle_[order_[i]]);
-    const int axis = box.longest_axis();
+    int count = 0;
+    for (std::size_t bin = kBins; bin-- > 1;) {
+      if (counts[bin] > 0) box.add(boxes[bin].low), box.add(boxes[bin].high);
+      count += counts[bin];
+      above[bin] = count > 0 ? half_area(box) * count : HUGE_VAL;
+    }
+    Split best;
+    box = {}, count = 0;
+    for (std::size_t bin = 1; bin < kBins; ++bin) {
+      if (counts[bin - 1] > 0) box.add(boxes[bin - 1].low), box.add(boxes[bin - 1].high);
+      count += counts[bin - 1];
+      if (count == 0) continue;
+      const double cost = half_area(box) * count + above[bin];
+      if (cost < best.cost) best = {axis, static_cast<int>(bin), cost};
+    }
+    return best;
+  }
+
+  std::pair<Range, Range> halves(Range r) {
+    Box centers;
+    for (std::uint32_t i = r.begin; i < r.end; ++i) centers.add(middle_[order_[i]]);
+    Split best;
+    for (int axis = 0; axis < 3; ++axis)
+      if (const Split split = best_along(r, centers, axis); split.cost < best.cost) best = split;
+    if (best.axis < 0) return halves_of_list(r);
+    const auto middle = std::stable_partition(
+        order_.begin() + r.begin, order_.begin() + r.end,
+        [&](std::uint32_t t) { return bin_of(t, centers, best.axis) < best.bin; });
+    const auto split = static_cast<std::uint32_t>(middle - order_.begin());
+    return {{r.begin, split}, {split, r.end}};
+  }
+
+  // Splits triangles with one centre.
+  static std::pair<Range, Range> halves_of_list(Range r) {
     const std::uint32_t split = r.begin + (r.size() + 1) / 2;
-    std::nth_element(order_.begin() + r.begin, order_.begin() + split, order_.begin() + r.end,
-                     [&](std::uint32_t s, std::uint32_t t) {
-                       const double x = coordinate(middle_[s], axis),
-                                    y = coordinate(middle_[t], axis);
-                       return x != y ? x < y : s < t;
-                     });
     return {{r.begin, split}, {split, r.end}};
   }
 
@@ -240,6 +296,7 @@ class SurfaceTree::Build {
   double padding_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> middle_;
+  std::vector<Box> bounds_;
   std::vector<Range> ranges_;  // of the nodes
 };
 
