@@ -40,8 +40,9 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
 Depth DepthGrid::at(Vec3 x) const {
   std::array<std::size_t, 3> cell{};
   std::array<double, 3> part{};
+  const double per_cell = 1 / cell_;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double along = coordinate(x - low_, static_cast<int>(k)) / cell_;
+    const double along = per_cell * coordinate(x - low_, static_cast<int>(k));
     const double last = static_cast<double>(count_[k] - 1);
     const double inside = std::clamp(along, 0.0, last);
     cell[k] = std::min(static_cast<std::size_t>(inside), count_[k] - 2);
@@ -57,7 +58,7 @@ Depth DepthGrid::at(Vec3 x) const {
   const double along_x0 = between(double{s[1]} - s[0], double{s[y + 1]} - s[y], ty),
                along_x1 = between(double{s[z + 1]} - s[z], double{s[y + z + 1]} - s[y + z], ty);
   const Vec3 gradient{between(along_x0, along_x1, tz), between(x10 - x00, x11 - x01, tz), y1 - y0};
-  return {between(y0, y1, tz), (1 / cell_) * gradient};
+  return {between(y0, y1, tz), per_cell * gradient};
 }
 
 }  // namespace vpm
