@@ -6,41 +6,20 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-#include <utility>
 #include <vector>
+
+#include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
 namespace {
 
-// Returns how many letters must be changed, added or left out to make one word of the other.
-std::size_t edits_between(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = std::exchange(row[k + 1], std::min({changed, row[k + 1] + 1, row[k] + 1}));
-    }
-  }
-  return row[b.size()];
-}
-
 // Returns the option, with its dashes, that is nearly the one given or begins as it does; empty if
 // none is near.
 std::string nearest_option(const CLI::App& app, const std::string& given) {
-  constexpr std::size_t kMostEdits = 2, kShortest = 5;  // letters, with the dashes
-  if (given.size() < kShortest) return {};
-  std::string best;
-  std::size_t fewest = kMostEdits + 1;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      const std::string full = "--" + name;
-      const std::size_t edits = full.starts_with(given) ? 0 : edits_between(given, full);
-      if (edits < fewest) best = full, fewest = edits;
-    }
-  }
-  return best;
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return nearest_word(given, names, 5);  // letters, with the dashes
 }
 
 // Returns "there is no option --tol; is --tool meant?", or CLI11's words if none is near.

@@ -248,7 +248,8 @@ void Program::refuse_senseless_values() const {
 std::string Program::in_words_of_options(const std::string& text) const {
   return in_words_of_tools(text, [&](const std::string& name) {
     const CLI::Option* const option = app_.get_option_no_throw(name);
-    return option != nullptr && !option->get_group().empty();  // those that are gone have none
+    if (option == nullptr || std::ranges::count(not_named_, name) > 0) return false;
+    return !option->get_group().empty();  // those that are gone have none
   });
 }
 
@@ -263,6 +264,10 @@ void Program::note(const std::string& text) const {
 
 void Program::warn(const std::string& text) const {
   print("warning: ", text);
+}
+
+void Program::error(const std::string& text) const {
+  print("error: ", text);
 }
 
 void Program::detail(const std::string& text) const {

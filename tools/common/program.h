@@ -49,6 +49,9 @@ class Program {
   void show_exit_code(int code, std::string meaning) {
     help_->add_exit_code(code, std::move(meaning));
   }
+  // Lets no message name these options from now on, since they do not go with what is asked: it
+  // names the program that has them.
+  void name_no_more(std::vector<std::string> options) { not_named_ = std::move(options); }
   // Lets run() return this where the job does not fail, in place of 0: the answer to a question of
   // a script.
   void end_with(int code) { answer_ = code; }
@@ -61,6 +64,8 @@ class Program {
   void note(const std::string& text) const;
   // Prints "vpm-pack: warning: ..." to standard error, with --quiet too.
   void warn(const std::string& text) const;
+  // Prints "vpm-pack: error: ..." to standard error, of an input without which the job goes on.
+  void error(const std::string& text) const;
   // Prints "vpm-pack: ..." to standard error with --verbose only.
   void detail(const std::string& text) const;
 
@@ -86,6 +91,7 @@ class Program {
   CommonOptions common_;
   bool dump_config_ = false;
   bool on_devices_ = false;
+  std::vector<std::string> not_named_;
   int answer_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/query/pairs_assembly.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
@@ -26,9 +27,9 @@ constexpr GoneOption kGone[] = {
 };
 
 // Options that say how the files of frames are read, which is vpm-normals' subject.
-constexpr const char* kOfFrames[] = {"--depth-scale", "--unit",   "--invalid", "--range",
-                                     "--along-ray",   "--decode", "--channel", "--axes",
-                                     "--flip",        "--method", "--window",  "--edge-gate"};
+constexpr const char* kOfFrames[] = {"--depth-scale", "--invalid", "--range",    "--along-ray",
+                                     "--decode",      "--channel", "--axes",     "--flip",
+                                     "--method",      "--window",  "--edge-gate"};
 
 void refuse_option_of_frames(const std::string& name) {
   throw Error(ErrorKind::invalid_argument, name +
@@ -85,6 +86,31 @@ void declare_inputs(CLI::App& app, Arguments& a) {
          "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
          "lines; goes with --poses")
       ->option_text("FOLDER");
+}
+
+void declare_assembly(CLI::App& app, Arguments& a) {
+  begin_group(app, "Assemblies");
+  app.add_option("--pairs", a.pairs,
+                 "Instead of --tool: a folder of closed meshes or models, or a description of an "
+                 "assembly (.json). All pairs of parts are measured, and those that share volume "
+                 "are told")
+      ->option_text("FOLDER");
+  app.add_option("--fail-above", a.fail_above,
+                 "Exit status 10 if a pair shares more than this volume, in the cube of --unit; 0: "
+                 "any volume. Pairs that the description allows have limits of their own")
+      ->check(number_in(0, 1e300))
+      ->option_text("VOLUME");
+  app.add_option("--unit", a.unit,
+                 "Unit of the meshes, poses and results of --pairs: m, cm, mm, um, in or ft")
+      ->check(CLI::IsMember(names_of_units()))
+      ->option_text("U");
+  app.add_option("--repair", a.repair,
+                 "Repair those meshes of --pairs that are no solid, as vpm-pack does: holes, which "
+                 "is meant if no "
+                 "value follows, voxel[=RES] or flood[=RES]")
+      ->expected(0, 1)
+      ->default_str("holes")
+      ->option_text("[holes|voxel|flood]");
 }
 
 void declare_requests(CLI::App& app, Arguments& a) {
@@ -215,6 +241,7 @@ void check_spheres_path(const std::string& path) {
 void declare(CLI::App& app, Arguments& a) {
   declare_inputs(app, a);
   declare_outputs(app, a);
+  declare_assembly(app, a);
   declare_requests(app, a);
   declare_measure(app, a);
   declare_collisions(app, a);
@@ -234,9 +261,11 @@ void check_names(const Arguments& a, const CommonOptions& common) {
   for (const std::string& text : a.solids) solids.push_back(solid_from_text(text).name);
   if (std::ranges::count(solids, "-") > 0)
     throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
-  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + std::ranges::count(a.poses, "-") > 1)
+  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.pairs == "-") +
+          std::ranges::count(a.poses, "-") >
+      1)
     throw Error(ErrorKind::invalid_argument,
-                "only one of --tool, --cloud and --poses can be standard input");
+                "only one of --tool, --cloud, --pairs and --poses can be standard input");
   if (a.serve && (std::ranges::count(a.tools, "-") > 0 || a.cloud == "-"))
     throw Error(
         ErrorKind::invalid_argument,
@@ -246,7 +275,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                 "--serve answers in JSON: let the name of --output end in .jsonl");
   KeptLines::check(a.output, leftover_of(a, common));
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  std::vector<std::string> inputs{a.cloud, a.replay.frames, a.replay.camera_poses};
+  std::vector<std::string> inputs{a.cloud, a.pairs, a.replay.frames, a.replay.camera_poses};
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   inputs.insert(inputs.end(), solids.begin(), solids.end());
   inputs.insert(inputs.end(), a.poses.begin(), a.poses.end());

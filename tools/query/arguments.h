@@ -29,7 +29,9 @@ struct ReplayArguments {
 // Values of the options, in the units that --help names.
 struct Arguments {
   std::vector<std::string> tools;
-  std::vector<std::string> solids;  // each FILE or FILE@POSE
+  std::vector<std::string> solids;   // each FILE or FILE@POSE
+  std::string pairs, unit, repair;   // of an assembly
+  std::optional<double> fail_above;  // in the cube of its unit
   std::string cloud, pose;
   std::vector<std::string> poses;  // one file, or one for each tool
   std::string measure = "refined", shadows = "near";

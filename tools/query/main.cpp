@@ -1,7 +1,9 @@
-// vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out.
+// vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out; which parts
+// of an assembly share volume.
 
 #include "tools/query/arguments.h"
 #include "tools/query/mode.h"
+#include "tools/query/pairs.h"
 
 namespace vpm::tools {
 namespace {
@@ -10,6 +12,8 @@ void run(Program& program, const Arguments& arguments) {
   const Mode mode = mode_of(arguments);
   check_options(program.app(), mode);
   check_names(arguments, program.common());
+  if (mode == Mode::pairs) return run_pairs(program, arguments);
+  program.name_no_more({"--unit", "--repair"});
   QuerySetup setup(program, arguments);
   switch (mode) {
     case Mode::poses:
@@ -29,6 +33,8 @@ void run(Program& program, const Arguments& arguments) {
     case Mode::server:
       run_server(setup);
       break;
+    case Mode::pairs:  // has no tool, hence no setup
+      break;
   }
   if (mode != Mode::server) program.end_with(setup.collisions.exit_code());
 }
@@ -41,7 +47,8 @@ int main(int argc, char** argv) {
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   declare(program.app(), arguments);
-  program.show_exit_code(10, "with --collides: at a pose there is a collision");
+  program.show_exit_code(
+      10, "with --collides: at a pose there is a collision; with --fail-above: a pair above it");
   program.show_exit_code(11, "the same: at none there is one, but at some nobody can know");
   program.show_examples({
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",

@@ -1,4 +1,4 @@
-// The library that packs meshes for vpm-query, a client of vpm::solid.
+// The library that reads and packs meshes for vpm-query, a client of vpm::solid.
 #include "tools/query/mesh_plugin.h"
 
 #include <vpm/device.h>
@@ -15,24 +15,22 @@ void copy(const std::string& text, char (&into)[1024]) {
   std::strncpy(into, text.c_str(), sizeof into - 1);
 }
 
+void tell(const SolidMesh& mesh, SayOfMesh say, void* listener) {
+  for (const std::string& note : mesh.notes()) say(listener, false, note.c_str());
+  for (const std::string& warning : mesh.warnings()) say(listener, true, warning.c_str());
+}
+
 void pack_mesh(const char* path, unsigned spheres, const char* output, SayOfMesh say,
                void* listener) {
   const SolidMesh mesh = SolidMesh::read(path);
-  for (const std::string& note : mesh.notes()) say(listener, false, note.c_str());
-  for (const std::string& warning : mesh.warnings()) say(listener, true, warning.c_str());
+  tell(mesh, say, listener);
   build_tool(pack(mesh, {.spheres = spheres})).write(output);
 }
 
-}  // namespace
-
-extern "C" __attribute__((visibility("default"))) bool vpm_pack_mesh(const char* mesh,
-                                                                     unsigned spheres, int threads,
-                                                                     const char* output,
-                                                                     SayOfMesh say, void* listener,
-                                                                     PackingFault* fault) {
+// Returns true if the job is done, and fills `fault` if it throws.
+bool is_done(const auto& job, PackingFault* fault) {
   try {
-    set_thread_count(threads);
-    pack_mesh(mesh, spheres, output, say, listener);
+    job();
     return true;
   } catch (const Error& error) {
     fault->kind = static_cast<int>(error.kind());
@@ -43,6 +41,33 @@ extern "C" __attribute__((visibility("default"))) bool vpm_pack_mesh(const char*
     copy(error.what(), fault->problem);
   }
   return false;
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) bool vpm_pack_mesh(const char* mesh,
+                                                                     unsigned spheres, int threads,
+                                                                     const char* output,
+                                                                     SayOfMesh say, void* listener,
+                                                                     PackingFault* fault) {
+  set_thread_count(threads);
+  return is_done([&] { pack_mesh(mesh, spheres, output, say, listener); }, fault);
+}
+
+extern "C" __attribute__((visibility("default"))) void vpm_use_threads(int threads) {
+  set_thread_count(threads);
+}
+
+extern "C" __attribute__((visibility("default"))) bool vpm_read_solid(
+    const char* mesh, const SolidOptions* options, SayOfMesh say, void* listener,
+    std::optional<SolidBody>* body, PackingFault* fault) {
+  return is_done(
+      [&] {
+        const SolidMesh solid = SolidMesh::read(mesh, *options);
+        tell(solid, say, listener);
+        body->emplace(solid, false);
+      },
+      fault);
 }
 
 }  // namespace vpm::tools

@@ -2,6 +2,10 @@
 // given, since the libraries that it needs take longer to load than a query takes.
 #pragma once
 
+#include <vpm/solid.h>
+
+#include <optional>
+
 namespace vpm::tools {
 
 // Texts of an error as Error has them, cut to what fits; `kind` is that of ErrorKind.
@@ -18,7 +22,16 @@ using SayOfMesh = void (*)(void* listener, bool is_warning, const char* text);
 using PackMesh = bool (*)(const char* mesh, unsigned spheres, int threads, const char* output,
                           SayOfMesh say, void* listener, PackingFault* fault);
 
+// Reads the mesh of a file and prepares it, without what forces need, into `body`. Thread-safe.
+// Returns false, and fills `fault`, where that fails.
+using ReadSolid = bool (*)(const char* mesh, const SolidOptions* options, SayOfMesh say,
+                           void* listener, std::optional<SolidBody>* body, PackingFault* fault);
+// Caps the threads of the plug-in, to be called once, before it works.
+using UseThreads = void (*)(int threads);
+
 inline constexpr const char* kMeshPlugin = "libvpm_mesh_plugin.so";
 inline constexpr const char* kPackMesh = "vpm_pack_mesh";
+inline constexpr const char* kReadSolid = "vpm_read_solid";
+inline constexpr const char* kUseThreads = "vpm_use_threads";
 
 }  // namespace vpm::tools

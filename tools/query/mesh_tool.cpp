@@ -41,22 +41,16 @@ class MemoryFile {
   int descriptor_;
 };
 
-// Returns the function of the plug-in, which lies below the libraries where it
-// is installed, and beside them in a build.
-PackMesh load_plugin() {
+// Loads the plug-in, which lies below the libraries where it is installed, and beside them in a
+// build.
+void* load_plugin() {
   std::error_code fault;
   const fs::path folder = fs::read_symlink("/proc/self/exe", fault).parent_path();
   void* library = nullptr;
   for (const fs::path& place :
        {folder / ".." / "lib" / "vpm" / kMeshPlugin, folder / ".." / "lib" / kMeshPlugin})
     if (library == nullptr) library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* const function = library == nullptr ? nullptr : ::dlsym(library, kPackMesh);
-  if (function == nullptr)
-    throw Error(
-        ErrorKind::unavailable,
-        std::string("a mesh in place of a model needs ") + kMeshPlugin + ", which is not there", {},
-        "give the .vpmg that vpm-pack and vpm-graph make of it");
-  return reinterpret_cast<PackMesh>(function);
+  return library;
 }
 
 struct Listener {
@@ -71,20 +65,35 @@ void say_of_mesh(void* listener, bool is_warning, const char* text) {
 
 }  // namespace
 
-bool is_mesh_file(const std::string& path) {
+void* function_of_meshes(const char* name) {
+  static void* const library = load_plugin();
+  void* const function = library == nullptr ? nullptr : ::dlsym(library, name);
+  if (function == nullptr)
+    throw Error(
+        ErrorKind::unavailable,
+        std::string("a mesh in place of a model needs ") + kMeshPlugin + ", which is not there", {},
+        "give the .vpmg that vpm-pack and vpm-graph make of it");
+  return function;
+}
+
+bool has_mesh_ending(const std::string& path) {
   static const std::set<std::string> kEndings{".stl", ".obj", ".off",  ".ply", ".om",
                                               ".dae", ".glb", ".gltf", ".3mf", ".fbx"};
+  return kEndings.contains(file::in_lower_case(fs::path(path).extension().string()));
+}
+
+bool is_mesh_file(const std::string& path) {
   std::error_code fault;
   if (!fs::is_regular_file(path, fault) || file::is_container(path)) return false;
   const std::vector<std::byte> bytes = file::read_all(path);
   if (const auto content = file::sniff(bytes)) return content->is_mesh;
-  return kEndings.contains(file::in_lower_case(fs::path(path).extension().string()));
+  return has_mesh_ending(path);
 }
 
 namespace {
 
 Tool packed(const Program& program, const std::string& path, unsigned spheres) {
-  const PackMesh pack_mesh = load_plugin();
+  const auto pack_mesh = reinterpret_cast<PackMesh>(function_of_meshes(kPackMesh));
   const MemoryFile model;
   Listener listener{program, path};
   PackingFault fault;

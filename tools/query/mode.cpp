@@ -24,40 +24,52 @@ struct Row {
 // Options that are not in this table go with all modes.
 constexpr Row kTable[] = {
     // poses, batches, coupling, frames, several tools, several tools in frames,
-    // server
+    // server, pairs
     {"--tool",
-     {required, required, required, required, required, required, required},
+     {required, required, required, required, required, required, required, no},
      "give the .vpmg that vpm-graph wrote"},
     {"--cloud",
-     {scene, scene, scene, no, scene, no, yes},
+     {scene, scene, scene, no, scene, no, yes, no},
      "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
-    {"--solid", {scene, scene, scene, yes, scene, yes, yes}},
-    {"--bodies", {yes, no, no, no, no, no, no}},
-    {"--pose", {either, either, no, no, either, no, no}},
+    {"--solid", {scene, scene, scene, yes, scene, yes, yes, no}},
+    {"--bodies", {yes, no, no, no, no, no, no, no}},
+    {"--pose", {either, either, no, no, either, no, no, no}},
     {"--poses",
-     {either, either, required, required, either, required, no},
+     {either, either, required, required, either, required, no, yes},
      "give the path of the haptic device, or with --frames the path of the "
      "tool"},
-    {"--batch", {yes, yes, no, no, yes, no, no}},
-    {"--coupling", {yes, no, yes, yes, no, no, no}},
-    {"--deadline-us", {yes, no, yes, yes, no, no, yes}},
-    {"--coherent", {yes, no, yes, yes, no, no, yes}},
-    {"--collides", {yes, yes, no, yes, yes, yes, yes}},
-    {"--unseen", {yes, yes, no, yes, yes, yes, yes}},
-    {"--spheres-out", {yes, yes, yes, yes, no, no, no}},
-    {"--frames", {no, no, no, yes, no, yes, no}},
-    {"--rate", {no, no, no, yes, no, yes, no}},
-    {"--camera-poses", {no, no, no, yes, no, yes, no}},
-    {"--frame-rate", {no, no, no, yes, no, yes, no}},
-    {"--frame-latency", {no, no, no, yes, no, yes, no}},
-    {"--align-starts", {no, no, no, yes, no, yes, no}},
-    {"--repeat-frames", {no, no, no, yes, no, yes, no}},
-    {"--realtime", {no, no, no, yes, no, yes, no}},
-    {"--intrinsics", {no, no, no, yes, no, yes, yes}},
-    {"--camera-pose", {no, no, no, yes, no, yes, yes}},
-    {"--view", {yes, yes, yes, yes, yes, yes, no}},
-    {"--resume", {yes, yes, yes, yes, yes, yes, no}},
-    {"--serve", {no, no, no, no, no, no, yes}},
+    {"--batch", {yes, yes, no, no, yes, no, no, no}},
+    {"--coupling", {yes, no, yes, yes, no, no, no, no}},
+    {"--deadline-us", {yes, no, yes, yes, no, no, yes, no}},
+    {"--coherent", {yes, no, yes, yes, no, no, yes, no}},
+    {"--collides", {yes, yes, no, yes, yes, yes, yes, no}},
+    {"--unseen", {yes, yes, no, yes, yes, yes, yes, no}},
+    {"--spheres-out", {yes, yes, yes, yes, no, no, no, no}},
+    {"--frames", {no, no, no, yes, no, yes, no, no}},
+    {"--rate", {no, no, no, yes, no, yes, no, no}},
+    {"--camera-poses", {no, no, no, yes, no, yes, no, no}},
+    {"--frame-rate", {no, no, no, yes, no, yes, no, no}},
+    {"--frame-latency", {no, no, no, yes, no, yes, no, no}},
+    {"--align-starts", {no, no, no, yes, no, yes, no, no}},
+    {"--repeat-frames", {no, no, no, yes, no, yes, no, no}},
+    {"--realtime", {no, no, no, yes, no, yes, no, no}},
+    {"--intrinsics", {no, no, no, yes, no, yes, yes, no}},
+    {"--camera-pose", {no, no, no, yes, no, yes, yes, no}},
+    {"--view", {yes, yes, yes, yes, yes, yes, no, no}},
+    {"--resume", {yes, yes, yes, yes, yes, yes, no, no}},
+    {"--serve", {no, no, no, no, no, no, yes, no}},
+    {"--measure", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--stiffness", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--shadows", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--raw-points", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--level", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--max-error", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--for-scene", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--stats", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--pairs", {no, no, no, no, no, no, no, yes}},
+    {"--fail-above", {no, no, no, no, no, no, no, yes}},
+    {"--unit", {no, no, no, no, no, no, no, yes}},
+    {"--repair", {no, no, no, no, no, no, no, yes}},
 };
 
 struct Pair {
@@ -106,6 +118,7 @@ constexpr Words kWords[kModes] = {
     {"several tools in a cloud", "chosen by more than one --tool"},
     {"several tools in recorded frames", "chosen by --frames and more than one --tool"},
     {"requests", "chosen by --serve"},
+    {"pairs of an assembly", "chosen by --pairs"},
 };
 
 // True if both are the same text or the same number.
@@ -120,6 +133,7 @@ bool is_given(const CLI::App& app, const char* name) {
   const CLI::Option& option = *app.get_option(name);
   if (option.count() == 0) return false;
   if (option.get_expected_max() == 0) return option.as<bool>();
+  if (option.get_expected_min() == 0) return true;  // its default is that of a value left out
   return !is_same_value(option.results().back(), option.get_default_str());
 }
 
@@ -180,6 +194,7 @@ void check_paths(const CLI::App& app, Mode mode) {
 }  // namespace
 
 Mode mode_of(const Arguments& a) {
+  if (!a.pairs.empty()) return Mode::pairs;
   if (a.serve) return Mode::server;
   const bool are_several = a.tools.size() > 1;
   if (!a.replay.frames.empty()) return are_several ? Mode::tools_in_frames : Mode::frames;

@@ -16,9 +16,10 @@ enum class Mode {
   frames,           // path through recorded frames, with or without a haptic device
   several_tools,    // poses of several tools in a cloud, one by one or many at once
   tools_in_frames,  // several tools through recorded frames, on one path or on one for each
-  server            // requests on standard input, answered line by line
+  server,           // requests on standard input, answered line by line
+  pairs             // all pairs of an assembly's parts
 };
-constexpr std::size_t kModes = 7;
+constexpr std::size_t kModes = 8;
 
 // Returns the mode that the options choose.
 Mode mode_of(const Arguments& arguments);

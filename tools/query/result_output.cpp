@@ -125,6 +125,29 @@ std::string csv_field(const nlohmann::ordered_json& value) {
   return quoted + "\"";
 }
 
+bool is_csv(const std::string& path) {
+  return file::in_lower_case(std::filesystem::path(path).extension().string()) == ".csv";
+}
+
+std::string names_of(std::span<const CsvColumn> columns) {
+  std::string names;
+  for (const CsvColumn& column : columns)
+    names += (names.empty() ? "" : ",") + std::string(column.name);
+  return names;
+}
+
+// Returns the line as CSV, or as JSON where there are no columns.
+std::string text_of_line(const nlohmann::ordered_json& line, std::span<const CsvColumn> columns) {
+  if (columns.empty()) return json_text(line);
+  std::string text;
+  for (const CsvColumn& column : columns) {
+    const nlohmann::ordered_json::json_pointer place(column.pointer);
+    if (&column != columns.data()) text += ',';
+    if (line.contains(place)) text += csv_field(line[place]);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::span<const CsvColumn> result_columns() {
@@ -135,6 +158,14 @@ std::span<const CsvColumn> coupling_columns() {
   return kCoupling;
 }
 
+void write_lines(const std::string& path, std::span<const CsvColumn> columns,
+                 std::span<const nlohmann::ordered_json> lines) {
+  if (!is_csv(path)) columns = {};
+  std::string text = columns.empty() ? "" : names_of(columns) + "\n";
+  for (const nlohmann::ordered_json& line : lines) text += text_of_line(line, columns) + "\n";
+  file::write_all(path, text);
+}
+
 ResultOutput::ResultOutput(const Program& program, const Arguments& arguments,
                            std::span<const CsvColumn> columns)
     : program_(program), path_(arguments.output) {
@@ -143,14 +174,13 @@ ResultOutput::ResultOutput(const Program& program, const Arguments& arguments,
   else
     straight_.emplace(path_);
   there_ = kept_ ? kept_->lines() : 0;
-  if (file::in_lower_case(std::filesystem::path(path_).extension().string()) != ".csv") return;
+  if (!is_csv(path_)) return;
   columns_ = columns;
   if (there_ > 0) {  // the first line has the names
     --there_;
     return;
   }
-  for (const CsvColumn& column : columns)
-    names_ += (names_.empty() ? "" : ",") + std::string(column.name);
+  names_ = names_of(columns);
 }
 
 ResultOutput::~ResultOutput() {
@@ -171,15 +201,8 @@ void ResultOutput::append(const nlohmann::ordered_json& line) {
     --there_;
     return;
   }
-  if (columns_.empty()) return write(json_text(line));
   write_names();
-  std::string text;
-  for (const CsvColumn& column : columns_) {
-    const nlohmann::ordered_json::json_pointer place(column.pointer);
-    if (&column != columns_.data()) text += ',';
-    if (line.contains(place)) text += csv_field(line[place]);
-  }
-  write(text);
+  write(text_of_line(line, columns_));
 }
 
 void ResultOutput::finish() {

@@ -23,6 +23,11 @@ struct CsvColumn {
 std::span<const CsvColumn> result_columns();
 std::span<const CsvColumn> coupling_columns();
 
+// Writes the lines at once to a file, or to standard output ("-"): as CSV if its name ends in .csv.
+// Throws Error(cannot_write).
+void write_lines(const std::string& path, std::span<const CsvColumn> columns,
+                 std::span<const nlohmann::ordered_json> lines);
+
 class ResultOutput {
  public:
   // Opens the output of --output, whose first line in CSV has the columns' names. Lines of a file

@@ -231,4 +231,30 @@ class VPM_API OverlapQuery {
 VPM_API Overlap overlap(const SolidBody& a, const Pose& pose_a, const SolidBody& b,
                         const Pose& pose_b, const OverlapOptions& options = {});
 
+// A part of an assembly: a solid, and the pose that maps its mesh to the world.
+struct Part {
+  SolidBody solid;
+  Pose to_world;
+};
+
+// Two parts of a list that share volume.
+struct OverlappingPair {
+  std::size_t first = 0, second = 0;  // their places in the list; first < second
+  Overlap overlap;                    // a is the first
+  // Tells why no answer is given, though the two may share volume; empty as a rule.
+  std::string refusal;
+};
+
+// Returns the pairs of parts that share volume, in ascending order of `first`, then `second`, with
+// what overlap() returns of each. Parts that only touch are no pair: a volume is left out if faces
+// that are flush may have it, which are moved by 2^-34 of the larger radius and by the rounding of
+// places far from the origin. Where the boundary of what two parts share does not close, their pair
+// has the refusal that overlap() throws, so that it hides no others. Takes time of the contacts'
+// sizes, beside n log n of the boxes about n parts; uses several threads, whose number changes no
+// bit. Thread-safe. Throws as OverlapQuery does for options and bodies, and Error(refused), naming
+// the part by its place, for a pose that is none.
+VPM_API std::vector<OverlappingPair> overlapping_pairs(std::span<const Part> parts,
+                                                       const OverlapOptions& options = {
+                                                           .with_force = false});
+
 }  // namespace vpm

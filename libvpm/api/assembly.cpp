@@ -1,0 +1,136 @@
+#include <vpm/solid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "libvpm/api/handle_access.h"
+#include "libvpm/core/error.h"
+#include "libvpm/core/exact_pose.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/solid/box_pairs.h"
+#include "libvpm/solid/solid_surface.h"
+
+namespace vpm {
+namespace {
+
+// Distance by which flush faces may sink into each other: the jitter of both surfaces and the small
+// motion between them, in units of the jitter, relative to the larger reach; and the rounding of
+// places, relative to their distance from the origin.
+constexpr double kMoves = 4, kRoundingOfPlaces = 0x1p-50;
+
+// A part where it stands.
+struct PlacedPart {
+  const SolidSurface* surface = nullptr;
+  double area = 0;  // of the surface, m^2
+  double far = 0;   // distance of the solid from its mesh's or the world's origin, m; the larger
+  Box box;          // in the world, with room for the jitter
+};
+
+double area_of(const SolidSurface& surface) {
+  double twice = 0;
+  for (const auto& [a, b, c] : surface.tree().triangles()) {
+    const std::vector<Vec3>& v = surface.tree().vertices();
+    twice += norm(cross(v[b] - v[a], v[c] - v[a]));
+  }
+  return twice / 2;
+}
+
+// Returns the pose of each part, exact. Throws Error(refused) that names the part.
+std::vector<Pose> poses_of(std::span<const Part> parts) {
+  std::vector<Pose> poses;
+  for (const Part& part : parts) try {
+      poses.push_back(exact_pose(part.to_world));
+    } catch (const Error& error) {
+      throw Error(error.kind(), error.problem(), "part " + std::to_string(poses.size()),
+                  error.hint());
+    }
+  return poses;
+}
+
+PlacedPart placed(const SolidSurface& surface, const Pose& pose) {
+  const Vec3 center = pose * surface.center_of_mass();
+  PlacedPart result{&surface, 0, std::max(norm(center), norm(surface.center_of_mass())), {}};
+  for (const Vec3& v : surface.tree().vertices()) result.box.add(pose.rotation * v + center);
+  const double room = kMoves * SolidSurface::kJitter * surface.reach() +
+                      kRoundingOfPlaces * (result.far + surface.reach());
+  result.box.low = result.box.low - Vec3{room, room, room};
+  result.box.high = result.box.high + Vec3{room, room, room};
+  return result;
+}
+
+std::vector<PlacedPart> placed(std::span<const Part> parts) {
+  const std::vector<Pose> poses = poses_of(parts);
+  std::vector<PlacedPart> result(parts.size());
+  parallel_for(parts.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      result[k] = placed(*HandleAccess::shared(parts[k].solid), poses[k]);
+  });
+  std::map<const SolidSurface*, double> areas;
+  for (PlacedPart& part : result) {
+    const auto [at, is_new] = areas.try_emplace(part.surface, 0);
+    if (is_new) at->second = area_of(*part.surface);
+    part.area = at->second;
+  }
+  return result;
+}
+
+// Returns the volume that two parts may seem to share though they only touch, m^3.
+double volume_of_touch(const PlacedPart& a, const PlacedPart& b) {
+  const double reach = std::max(a.surface->reach(), b.surface->reach());
+  const double sunk =
+      kMoves * SolidSurface::kJitter * reach + kRoundingOfPlaces * (std::max(a.far, b.far) + reach);
+  return sunk * std::min(a.area, b.area);
+}
+
+// Throws as a query does of the options, and of a part that was made without what forces need.
+void check(std::span<const Part> parts, const OverlapOptions& options) {
+  const auto has_depth = [](const Part& part) {
+    return HandleAccess::shared(part.solid)->has_depth();
+  };
+  const auto bare = std::ranges::find_if_not(parts, has_depth);
+  if (parts.empty()) return;
+  const SolidBody& asked = (bare == parts.end() ? parts.front() : *bare).solid;
+  OverlapQuery(asked, asked, options);
+}
+
+// Returns the pair with its overlap or refusal; none where the two only touch.
+std::optional<OverlappingPair> measured(std::span<const Part> parts, const BoxPair& at,
+                                        double volume_of_touch, const OverlapOptions& options) {
+  const Part &a = parts[at.first], &b = parts[at.second];
+  OverlapQuery query(a.solid, b.solid, options);
+  try {
+    const Overlap shared = query.run(a.to_world, b.to_world);
+    if (shared.volume <= volume_of_touch) return std::nullopt;
+    return OverlappingPair{at.first, at.second, shared, {}};
+  } catch (const Error& error) {
+    return OverlappingPair{at.first, at.second, {}, error.what()};
+  }
+}
+
+}  // namespace
+
+std::vector<OverlappingPair> overlapping_pairs(std::span<const Part> parts,
+                                               const OverlapOptions& options) {
+  check(parts, options);
+  const std::vector<PlacedPart> placed_parts = placed(parts);
+  std::vector<Box> boxes;
+  for (const PlacedPart& part : placed_parts) boxes.push_back(part.box);
+  const std::vector<BoxPair> near = boxes_that_meet(boxes);
+  std::vector<std::optional<OverlappingPair>> found(near.size());
+  parallel_for(near.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto [first, second] = near[k];
+      found[k] = measured(parts, near[k],
+                          volume_of_touch(placed_parts[first], placed_parts[second]), options);
+    }
+  });
+  std::vector<OverlappingPair> pairs;
+  for (std::optional<OverlappingPair>& pair : found)
+    if (pair) pairs.push_back(std::move(*pair));
+  return pairs;
+}
+
+}  // namespace vpm
