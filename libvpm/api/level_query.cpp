@@ -1,6 +1,7 @@
 #include <vpm/level_query.h>
 
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <string>
 #include <vector>
@@ -8,8 +9,19 @@
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/level_tool_query.h"
+#include "libvpm/query/scene_scale.h"
 
 namespace vpm {
+
+SceneScale scene_scale(const Scene& scene, double tool_radius, const std::optional<Vec3>& place) {
+  const std::vector<AnyBody>& bodies = HandleAccess::held(scene);
+  if (bodies.empty())
+    throw Error(ErrorKind::invalid_argument,
+                "a scene's scale is that of its points, and it has solids only", {}, "add a cloud");
+  if (!(tool_radius > 0) || !std::isfinite(tool_radius))
+    throw Error(ErrorKind::invalid_argument, "a tool's radius must be finite and greater than 0");
+  return scene_scale(bodies, tool_radius, place);
+}
 
 struct LevelQuery::Impl {
   Impl(std::span<const Tool> handles, const QueryOptions& options, const LevelRequest& level,

@@ -345,6 +345,35 @@ TEST(PublicApi, LevelsAreChosenForEachOfSeveralTools) {
   EXPECT_EQ(missing->kind(), vpm::ErrorKind::invalid_argument);
 }
 
+// A floor of points 1 cm apart resolves no spheres much smaller than that, and is flat.
+TEST(PublicApi, AScenesScaleIsThatOfItsPoints) {
+  const auto floor = [](double spacing) {
+    std::vector<vpm::Vec3> points, normals;
+    for (int x = 0; x < 40; ++x)
+      for (int y = 0; y < 40; ++y) points.push_back({spacing * x, spacing * y, 0});
+    normals.assign(points.size(), {0, 0, 1});
+    return vpm::Scene(vpm::PointCloud::from_points(points, normals));
+  };
+  const vpm::SceneScale coarse = vpm::scene_scale(floor(0.01), 0.1);
+  EXPECT_NEAR(coarse.spacing, 0.01, 0.002);
+  EXPECT_LT(coarse.noise, 1e-6);
+  const vpm::SceneScale fine = vpm::scene_scale(floor(0.005), 0.1, vpm::Vec3{0.1, 0.1, 0});
+  EXPECT_NEAR(fine.spacing, 0.005, 0.001);
+  EXPECT_LT(fine.smallest_radius(), coarse.smallest_radius());
+
+  const auto kind_for = [](const vpm::Scene& scene, double radius) {
+    const auto error = error_of([&] { vpm::scene_scale(scene, radius); });
+    return error ? std::optional(error->kind()) : std::nullopt;
+  };
+  for (const double radius : {0.0, -1.0, double(NAN), double(INFINITY)})
+    EXPECT_EQ(kind_for(floor(0.01), radius), vpm::ErrorKind::invalid_argument) << radius;
+  const vpm::Scene solids({vpm::Body(vpm::SolidBody(tool()), {})});
+  EXPECT_EQ(kind_for(solids, 0.1), vpm::ErrorKind::invalid_argument);
+  const vpm::Scene few(vpm::PointCloud::from_points(std::vector<vpm::Vec3>{{0, 0, 0}},
+                                                    std::vector<vpm::Vec3>{{0, 0, 1}}));
+  EXPECT_EQ(kind_for(few, 0.1), vpm::ErrorKind::refused);
+}
+
 TEST(PublicApi, JobsHaveNoDeadline) {
   vpm::LevelRequest request;
   request.deadline_seconds = 1;

@@ -86,7 +86,8 @@ TEST(MovedFrom, Scene) {
   expect_refused<vpm::Scene>(vpm::Scene(cloud()), "Scene",
                              {[](auto& s) { s.bodies(); }, [](auto& s) { query.run(s, kPose); },
                               [](auto& s) { query.run(s, std::vector<vpm::Job>(1), results); },
-                              [](auto& s) { vpm::LevelQuery(tool(), {}, {}, s, kPose); }});
+                              [](auto& s) { vpm::LevelQuery(tool(), {}, {}, s, kPose); },
+                              [](auto& s) { vpm::scene_scale(s, 1); }});
 }
 
 TEST(MovedFrom, Tool) {

@@ -1,5 +1,7 @@
 // vpm-pack: fills a mesh with spheres that neither overlap nor protrude.
 
+#include <vpm/level_query.h>
+#include <vpm/scene.h>
 #include <vpm/version.h>
 
 #include <algorithm>
@@ -14,7 +16,6 @@
 #include <system_error>
 #include <vector>
 
-#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
@@ -26,8 +27,6 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
-#include "libvpm/query/scene_scale.h"
-#include "libvpm/scene/any_body.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
@@ -223,9 +222,9 @@ CheckedSolid checked_solid(const Program& program, const Arguments& a, const Raw
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
 SceneScale fit_to_scene(const Program& program, const Solid& solid, Arguments& a) {
-  const AnyBody cloud(read_cloud(a.for_scene));
+  const Scene scene(PointCloud::read(a.for_scene));
   const double size = bounding_radius(solid, mass_properties(solid).center_of_mass);
-  const SceneScale scale = scene_scale(cloud, size, std::nullopt);
+  const SceneScale scale = scene_scale(scene, size);
   a.min_radius = std::max(a.min_radius, scale.smallest_radius());
   const double largest = std::min(a.max_radius.value_or(HUGE_VAL), scale.largest_radius());
   if (std::isfinite(largest)) a.max_radius = largest;

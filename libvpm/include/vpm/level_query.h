@@ -39,6 +39,16 @@ struct SceneScale {
   VPM_API double largest_radius() const;
 };
 
+// Returns how finely the scene's points tell its surface within 1.5 tool radii of `place` (world,
+// m), or everywhere where no place is given or too few points lie there: it tells how large the
+// spheres of a tool should be before there is one (Tool::radius() says what its radius, m, will
+// be). Of several bodies it is the scale of that which resolves the smallest spheres. Thread-safe;
+// the same bits for any number of threads. Throws Error(refused) for a body of fewer than 32
+// points, and Error(invalid_argument) for a scene of solids only and for a radius that is not above
+// 0.
+VPM_API SceneScale scene_scale(const Scene& scene, double tool_radius,
+                               const std::optional<Vec3>& place = {});
+
 // Says which part of a request chose the level.
 enum class LevelReason {
   none,                     // nothing was requested: it is the finest
