@@ -135,20 +135,33 @@ bool take_numbers(const Fields& fields, const std::string& before, Candidate& ca
   return true;
 }
 
+// True for the numbers of a matrix that are all 0, as ROS publishes them of a camera that was never
+// calibrated.
+bool is_of_zeros(const std::vector<double>& m) {
+  return (m.size() == 9 || m.size() == 12) &&
+         std::ranges::all_of(m, [](double v) { return v == 0; });
+}
+
 // Sets the candidate to the first matrix, or list, of one camera; returns false if there is none.
 bool take_matrices(const Fields& fields, const std::string& behind, Candidate& candidate) {
+  const Fields::Field* of_zeros = nullptr;
   for (const char* key : {"k", "m", "cameramatrix", "intrinsicmatrix", "camk", "camera.k",
                           "intrinsics", "intrinsic", "p"}) {
     const Fields::Field* const field = fields.find({key + behind});
     if (!field) continue;
     const std::vector<double> numbers = numbers_of(*field->value);
+    if (!of_zeros && is_of_zeros(numbers)) of_zeros = field;
     const bool is_list = std::string_view(key).starts_with("intrinsic");
     if (!take_matrix(numbers, candidate) && !(is_list && take_list(fields, numbers, candidate)))
       continue;
     if (!behind.empty()) candidate.path += (candidate.path.empty() ? "" : ".") + field->key;
     return true;
   }
-  return false;
+  if (!of_zeros) return false;
+  candidate.fault = "its " + file::shown(of_zeros->key) +
+                    " is all zeros, as ROS publishes of a camera that was never calibrated";
+  candidate.hint = "calibrate the camera, or give its numbers as `intrinsics` fx,fy,cx,cy";
+  return true;
 }
 
 // True if the object has coefficients of a distortion that does something, in a list or each under

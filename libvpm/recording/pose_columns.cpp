@@ -1,12 +1,14 @@
 #include "libvpm/recording/pose_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <span>
 #include <string_view>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/pose_numbers.h"
 
 namespace vpm {
 namespace {
@@ -299,6 +301,28 @@ bool may_tell_order(const std::string& text, const std::vector<Name>& names) {
   return names_quaternion || is_scalar_first || text.find("wxyz") != text.npos;
 }
 
+// True if the words name a position and, in place of a quaternion, three angles or the three parts
+// of a rotation vector: "x y z roll pitch yaw", "tx ty tz rx ry rz".
+bool names_angles(const std::vector<std::string_view>& words) {
+  std::size_t positions = 0, angles = 0, axes = 0;
+  for (const std::string_view word : words) {
+    const Name name = name_of(word);
+    if (name.axis == 3 && is_axis(name)) return false;  // w
+    const bool is_angle =
+        std::ranges::any_of(std::array{"roll", "pitch", "yaw", "euler", "rotvec"},
+                            [&](std::string_view angle) { return word.find(angle) != word.npos; });
+    if (is_angle)
+      ++angles;
+    else if (name.part == Part::quaternion && word.front() != 'r')
+      return false;
+    else if (name.part == Part::quaternion)
+      ++axes;
+    else if (is_axis(name))
+      ++positions;
+  }
+  return positions >= 3 && (angles >= 3 || (axes == 3 && angles == 0));
+}
+
 // True if the order is that of numbers without names: time, position and quaternion x, y, z, w.
 bool is_usual(const PoseColumns& columns) {
   const std::size_t first = columns.time ? 1 : 0;
@@ -346,7 +370,7 @@ std::optional<PoseNames> names_in(const std::string& line, std::size_t number) {
   if (!may_hold_names(lower)) return std::nullopt;
   std::optional<double> unit;
   const std::string text = without_brackets(lower, unit);
-  PoseNames found{number, line, {}, {}};
+  PoseNames found{number, line, {}, {}, false};
   if (text.find(',') != text.npos)
     if (const auto cells = names_of_cells(text)) found.orders = orders_of(*cells, unit);
   const std::vector<Name> words = names_of_words(text);
@@ -354,12 +378,17 @@ std::optional<PoseNames> names_in(const std::string& line, std::size_t number) {
     found.orders = orders_of(words, unit);
     found.open_count = open_count(found.orders, words);
   }
-  if (found.orders.empty() && !may_tell_order(text, words)) return std::nullopt;
+  if (!found.orders.empty()) return found;
+  found.has_angles = names_angles(file::split_words(text, " \t\r,#%"));
+  if (!found.has_angles && !may_tell_order(text, words)) return std::nullopt;
   return found;
 }
 
 std::vector<double> in_usual_order(const std::vector<double>& numbers, const PoseNames& names) {
   const std::string line = "line " + std::to_string(names.line);
+  if (names.has_angles)
+    refuse(line + " names angles where a quaternion should be: " + file::shown(names.text), {},
+           kAnglesHint);
   if (names.orders.empty() || names.open_count == numbers.size())
     refuse(line + " seems to tell the order of the numbers, but not clearly: " +
                file::shown(names.text),

@@ -29,12 +29,13 @@ struct PoseColumns {
 };
 
 // A line that names the columns, with the orders that it may mean: the one that has as many columns
-// as a line has numbers is used. None if it is not clear.
+// as a line has numbers is used. None if it is not clear, or if it names angles.
 struct PoseNames {
   std::size_t line = 0;
   std::string text;
   std::vector<PoseColumns> orders;
   std::optional<std::size_t> open_count;  // count of numbers that leaves the order open
+  bool has_angles = false;                // where a quaternion should be
 };
 
 // Returns what a line says of the columns, such as "# timestamp tx ty tz qw qx qy qz" or the header

@@ -141,6 +141,19 @@ TEST(IntrinsicsFile, RefusesWhatTellsNoCamera) {
   EXPECT_TRUE(says(refused(std::string("fx = 1\0", 8)), "not a text"));
 }
 
+TEST(IntrinsicsFile, RefusesACameraThatWasNeverCalibrated) {
+  const std::string nine = "[0,0,0, 0,0,0, 0,0,0]", twelve = "[0,0,0,0, 0,0,0,0, 0,0,0,0]";
+  for (const std::string& text : std::vector<std::string>{
+           R"({"width": 640, "height": 480, "K": )" + nine + R"(, "P": )" + twelve + "}",
+           R"({"camera_matrix": {"rows": 3, "cols": 3, "data": )" + nine + "}}",
+           R"({"K": [[0,0,0],[0,0,0],[0,0,0]]})", R"({"depth": {"k": )" + nine + "}}"}) {
+    EXPECT_TRUE(says(refused(text), "is all zeros")) << refused(text);
+    EXPECT_TRUE(says(refused(text), "calibrate the camera")) << refused(text);
+  }
+  // Another matrix in it serves.
+  expect_camera(R"({"K": )" + nine + R"(, "P": [525,0,319.5,0, 0,526,239.5,0, 0,0,1,0]})");
+}
+
 TEST(IntrinsicsFile, RefusesOtherFormatsByTheirNames) {
   for (const std::string start : {"", "\xEF\xBB\xBF", "\n "}) {
     EXPECT_TRUE(says(refused(start + "<?xml version=\"1.0\"?>\n<opencv_storage/>"), "XML"));

@@ -187,6 +187,29 @@ TEST(PoseForms, TablesAreReadOrTellTheColumn) {
   EXPECT_FALSE(says(refused("this is no table\n"), "leave this column out"));
 }
 
+TEST(PoseForms, AnglesAreNamedWithTheWayToQuaternions) {
+  for (const std::string header :
+       {"x,y,z,roll,pitch,yaw", "x y z rx ry rz", "# x y z roll pitch yaw", "tx;ty;tz;rx;ry;rz",
+        "x [m],y [m],z [m],roll [deg],pitch [deg],yaw [deg]", "X,Y,Z,Roll,Pitch,Yaw",
+        "pos_x,pos_y,pos_z,euler_x,euler_y,euler_z", "x,y,z,yaw_rad,pitch_rad,roll_rad",
+        "# px py pz rot_x rot_y rot_z"}) {
+    const std::string text = refused(header + "\n.1 .2 .3 0 0 1\n");
+    EXPECT_TRUE(says(text, "line 1 names angles where a quaternion should be")) << text;
+    EXPECT_TRUE(says(text, "from_euler")) << text;
+  }
+  for (const std::string header : {"time,x,y,z,roll,pitch,yaw", "# t x y z rx ry rz"}) {
+    const std::string text = refused(header + "\n0 .1 .2 0 0 0 1\n");  // would be a quaternion
+    EXPECT_TRUE(says(text, "line 1 names angles")) << text;
+  }
+  EXPECT_TRUE(says(refused(".1 .2 .3 0 0 1\n"), "found 6 numbers, like a position with three"));
+  EXPECT_TRUE(says(refused("tx ty tz qx qy qz\n.1 .2 .3 0 0 0\n"), "not clearly"));
+  // Quaternions beside angles, and words about them, are read.
+  EXPECT_EQ(read_all_poses("x,y,z,qx,qy,qz,qw,roll,pitch,yaw\n5,0,0,0,0,0,1,0,0,0\n").x,
+            Numbers{5});
+  EXPECT_EQ(read_all_poses("x y z rx ry rz rw\n5 0 0 0 0 0 1\n").x, Numbers{5});
+  EXPECT_EQ(read_all_poses("# roll, pitch and yaw are 0\n5 0 0 0 0 0 1\n").x, Numbers{5});
+}
+
 // Returns an array of NumPy of these numbers, which stand as `Value`.
 template <class Value>
 std::string npy(const std::string& type, const std::string& shape, const Numbers& numbers,
