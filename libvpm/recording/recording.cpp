@@ -232,6 +232,8 @@ bool are_all_lost(const Recording& recording) {
 void place_by_path(const std::string& name, Recording& recording) {
   PoseReader reader(name);
   const TimedPath path(reader, UndefinedPoses::skipped);
+  if (path.solids() > 0)
+    refuse("\"solids\" do not move with the camera", reader.place(), "give them with the tool's");
   recording.largest_deviation = reader.largest_deviation();
   recording.camera_source = name;
   recording.camera_undefined = path.undefined();

@@ -18,6 +18,11 @@ bool are_equal(const Pose& a, const Pose& b) {
          a.rotation.row1 == b.rotation.row1 && a.rotation.row2 == b.rotation.row2;
 }
 
+Pose between(const Pose& from, const Pose& to, double part) {
+  return {interpolate(from.rotation, to.rotation, part),
+          from.translation + part * (to.translation - from.translation)};
+}
+
 [[noreturn]] void refuse_order(double before, double time, const std::string& place) {
   char text[96];
   if (time == before) {
@@ -55,12 +60,16 @@ std::optional<Pose> TimedPath::next(PoseReader& reader, UndefinedPoses undefined
   }
 }
 
+// True if the last pose, with its time and solids, is this one.
+bool TimedPath::is_last(double time, const Pose& pose, const std::vector<Pose>& solids) const {
+  return !times_.empty() && time == times_.back() && times_.size() == poses_.size() &&
+         are_equal(pose, poses_.back()) &&
+         std::ranges::equal(solids, solids_of(poses_.size() - 1), are_equal);
+}
+
 void TimedPath::add(const PoseReader& reader, const Pose& pose) {
-  if (!reader.solids().empty())
-    refuse("\"solids\" do not move along a path", reader.place(), "leave them out");
   if (const std::optional<double> time = reader.time()) {
-    const bool is_again = !times_.empty() && *time == times_.back();
-    if (is_again && times_.size() == poses_.size() && are_equal(pose, poses_.back())) {
+    if (is_last(*time, pose, reader.solids())) {
       ++doubled_;
       return;
     }
@@ -68,24 +77,44 @@ void TimedPath::add(const PoseReader& reader, const Pose& pose) {
       refuse_order(times_.back(), *time, reader.place());
     times_.push_back(*time);
   }
+  add_solids(reader);
   poses_.push_back(pose);
   if (!times_.empty() && times_.size() != poses_.size())
     refuse("either every pose has a time or none", reader.place());
+}
+
+// Adds the poses of solids beside the next pose.
+void TimedPath::add_solids(const PoseReader& reader) {
+  if (!poses_.empty() && reader.solids().size() != solids())
+    refuse("\"solids\" has " + std::to_string(reader.solids().size()) +
+               " poses, and those before have " + std::to_string(solids()),
+           reader.place(), "give every pose of a path as many, or none");
+  if (!reader.solids().empty()) solids_.push_back(reader.solids());
 }
 
 bool TimedPath::is_undefined(std::size_t k) const {
   return std::binary_search(places_.begin(), places_.end(), k);
 }
 
-Pose TimedPath::at(double time) const {
+TimedPath::Place TimedPath::place_of(double time) const {
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
-  if (after == times_.begin()) return poses_.front();
-  if (after == times_.end()) return poses_.back();
+  if (after == times_.begin()) return {0, 0};
+  if (after == times_.end()) return {times_.size() - 1, 0};
   const std::size_t next = static_cast<std::size_t>(after - times_.begin());
-  const Pose &from = poses_[next - 1], &to = poses_[next];
-  const double part = (time - times_[next - 1]) / (times_[next] - times_[next - 1]);
-  return {interpolate(from.rotation, to.rotation, part),
-          from.translation + part * (to.translation - from.translation)};
+  return {next - 1, (time - times_[next - 1]) / (times_[next] - times_[next - 1])};
+}
+
+Pose TimedPath::at(double time) const {
+  const auto [from, part] = place_of(time);
+  return part == 0 ? poses_[from] : between(poses_[from], poses_[from + 1], part);
+}
+
+std::vector<Pose> TimedPath::solids_at(double time) const {
+  const auto [from, part] = place_of(time);
+  std::vector<Pose> poses = solids_of(from);
+  for (std::size_t k = 0; part > 0 && k < poses.size(); ++k)
+    poses[k] = between(poses[k], solids_[from + 1][k], part);
+  return poses;
 }
 
 std::optional<PoseGap> TimedPath::improbable_gap() const {
@@ -111,6 +140,10 @@ SampledPath::SampledPath(TimedPath path, double rate) : path_(std::move(path)), 
 
 Pose SampledPath::pose(std::size_t step) const {
   return path_.has_times() ? path_.at(path_.start() + time(step)) : path_.poses()[step];
+}
+
+std::vector<Pose> SampledPath::solids(std::size_t step) const {
+  return path_.has_times() ? path_.solids_at(path_.start() + time(step)) : path_.solids_of(step);
 }
 
 }  // namespace vpm

@@ -18,12 +18,13 @@ struct PoseGap {
 // pose; without times they keep their place.
 enum class UndefinedPoses { refused, skipped };
 
-// All poses of a reader, with their times if they have any.
+// All poses of a reader, with their times if they have any, and those of a scene's solids beside
+// them.
 class TimedPath {
  public:
   // Reads all poses. A line that gives the one before again, with its time, is dropped. Throws
-  // Error(refused) if there is no pose, if times do not ascend, if only some poses have one, and
-  // for errors of the reader.
+  // Error(refused) if there is no pose, if times do not ascend, if only some poses have one, or
+  // have other numbers of solids, and for errors of the reader.
   explicit TimedPath(PoseReader& reader, UndefinedPoses undefined = UndefinedPoses::refused);
   // Needs at least one pose, and as many ascending times (s) or none.
   TimedPath(std::vector<double> times, std::vector<Pose> poses)
@@ -43,6 +44,14 @@ class TimedPath {
   // the first or last pose outside the path's times. Needs has_times().
   Pose at(double time) const;
 
+  // Returns the number of solids that move with the path, and their poses, mesh to world, beside
+  // the k-th pose, or at a time, interpolated as the path is.
+  std::size_t solids() const { return solids_.empty() ? 0 : solids_.front().size(); }
+  std::vector<Pose> solids_of(std::size_t k) const {
+    return solids_.empty() ? std::vector<Pose>{} : solids_[k];
+  }
+  std::vector<Pose> solids_at(double time) const;
+
   // Returns the longest time without a pose if it is improbable of a sensor: more than half a
   // second, and more than ten times the median.
   std::optional<PoseGap> improbable_gap() const;
@@ -52,10 +61,20 @@ class TimedPath {
   std::optional<Pose> next(PoseReader& reader, UndefinedPoses undefined);
   // Adds the pose that was read last.
   void add(const PoseReader& reader, const Pose& pose);
+  bool is_last(double time, const Pose& pose, const std::vector<Pose>& solids) const;
+  void add_solids(const PoseReader& reader);
+
+  // A place between two poses: at `part` of the way from `from` to the next; 0 at either end.
+  struct Place {
+    std::size_t from;
+    double part;
+  };
+  Place place_of(double time) const;
 
   std::vector<double> times_;  // empty if poses have no times
   std::vector<Pose> poses_;
-  std::vector<std::size_t> places_;  // ascending; indices of poses that are undefined
+  std::vector<std::vector<Pose>> solids_;  // beside each pose; empty if none move
+  std::vector<std::size_t> places_;        // ascending; indices of poses that are undefined
   std::size_t doubled_ = 0, undefined_ = 0;
 };
 
@@ -70,6 +89,8 @@ class SampledPath {
   // Returns the seconds from the first step to this one.
   double time(std::size_t step) const { return static_cast<double>(step) / rate_; }
   Pose pose(std::size_t step) const;
+  // Returns the poses of the solids that move with the path; none if none do.
+  std::vector<Pose> solids(std::size_t step) const;
   const TimedPath& path() const { return path_; }
 
  private:

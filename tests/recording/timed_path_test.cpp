@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -82,6 +83,36 @@ TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
   const SampledPath untimed(path_of("0 0 0 0 0 0 1\n1 0 0 0 0 0 1\n"), 1000);
   EXPECT_EQ(untimed.steps(), 2u);
   EXPECT_EQ(untimed.time(1), 0.001);
+}
+
+// A path whose tool stays, beside a solid that moves by 4 m in 2 s, and one that stays.
+constexpr const char* kWithSolids =
+    "{\"time\": 1, \"tool\": [0, 0, 0, 0, 0, 0, 1],"
+    " \"solids\": [[0, 0, 0, 0, 0, 0, 1], [7, 0, 0, 0, 0, 0, 1]]}\n"
+    "{\"time\": 3, \"tool\": [0, 0, 0, 0, 0, 0, 1],"
+    " \"solids\": [[4, 0, 0, 0, 0, 0, 1], [7, 0, 0, 0, 0, 0, 1]]}\n";
+
+TEST_F(ATimedPath, MovesSolidsAsItMovesItself) {
+  const TimedPath path = path_of(kWithSolids);
+  EXPECT_EQ(path.solids(), 2u);
+  for (const auto& [time, x] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.5, 1.0}, {3.0, 4.0}, {9, 4}}) {
+    const std::vector<Pose> solids = path.solids_at(time);
+    ASSERT_EQ(solids.size(), 2u);
+    EXPECT_NEAR(solids[0].translation.x, x, 1e-12);
+    EXPECT_NEAR(solids[1].translation.x, 7, 1e-12);
+  }
+  EXPECT_NEAR(SampledPath(path, 1000).solids(1000)[0].translation.x, 2, 1e-9);
+  EXPECT_TRUE(path_of("1 1 0 0 0 0 0 1\n").solids_at(1).empty());
+}
+
+TEST_F(ATimedPath, MovesAsManySolidsWithEveryPose) {
+  const std::string two = kWithSolids, none = "{\"time\": 5, \"tool\": [0, 0, 0, 0, 0, 0, 1]}\n";
+  EXPECT_TRUE(says(test::refusal([&] { path_of(two + none); }), "line 3"));
+  // The same time with other solids is another pose.
+  std::string again = two.substr(two.find('\n') + 1);
+  EXPECT_EQ(path_of(two + again).doubled(), 1u);
+  again.replace(again.find("[4"), 2, "[5");
+  EXPECT_THROW(path_of(two + again), Error);
 }
 
 TEST_F(ATimedPath, KnowsATimeWithoutPosesThatIsImprobable) {

@@ -17,6 +17,7 @@
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -85,7 +86,7 @@ CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelQuery&
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
-    step.contact = query.run(scene.scene(), step.tool);
+    step.contact = query.run(scene.scene(), step.tool, 0, path.solids(k));
     scene.see(step.tool, 0, step.contact);
     run.seconds.push_back(query.seconds());
     if (view) view->add(0, step.tool, step.contact, query);
@@ -162,6 +163,7 @@ void run_coupling(QuerySetup& setup) {
       coupling_from_text(a.coupling, tool, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);
   note_lines(setup.program, a.poses.front(), path.path().undefined(), path.path().doubled());
+  check_moving_solids(a.poses.front(), path.path().solids(), a.solids.size());
   const Pose first = path.pose(0);
   LevelQuery query(tool, setup.options, setup.level, scene.scene(), first);
   note_scale(setup.program, query);

@@ -32,7 +32,7 @@ constexpr Row kTable[] = {
      {scene, scene, scene, no, scene, no, yes, no},
      "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
     {"--solid", {scene, scene, scene, yes, scene, yes, yes, no}},
-    {"--bodies", {yes, no, no, no, no, no, no, no}},
+    {"--bodies", {yes, yes, no, no, no, no, no, no}},
     {"--pose", {either, either, no, no, either, no, no, no}},
     {"--poses",
      {either, either, required, required, either, required, no, yes},

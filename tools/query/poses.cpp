@@ -81,8 +81,9 @@ void run_poses(QuerySetup& setup) {
   PoseQueries queries(setup, scene, source.first().pose, output);
   note_scale(setup.program, queries.query());
   source.pass_over(queries.asked());
-  const bool together = a.batch > 1;
-  for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
+  const bool together = a.batch > 1 && !a.bodies;  // a batch leaves no parts of bodies
+  const std::size_t most = together ? a.batch : 1;
+  for (auto poses = source.next(most); !poses.empty(); poses = source.next(most))
     together ? queries.ask_together(poses) : queries.ask(poses.front());
   output.finish();
   note_deviation(setup.program, "", source.largest_deviation());

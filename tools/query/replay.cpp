@@ -134,7 +134,7 @@ Replay::Replay(const QuerySetup& setup, double rate)
       arguments_(setup.arguments.replay),
       rate_(rate),
       tools_(setup.arguments.tools.size()),
-      paths_(program_, setup.arguments.poses, rate),
+      paths_(program_, setup.arguments.poses, rate, setup.arguments.solids.size()),
       import_(import_options(program_, arguments_.import)),
       device_(setup.options.device),
       points_(setup.points),
@@ -188,7 +188,7 @@ CoupledStep Replay::ask(std::size_t k, std::size_t tool, LevelQuery& query,
                         std::optional<VirtualCoupling>& coupling) const {
   CoupledStep step{k, paths_.time(k), paths_.pose(tool, k), {}, {}, {}, {}};
   step.tool = coupling ? coupling->tool() : step.device;
-  step.contact = query.run(*scene_, step.tool, tool);
+  step.contact = query.run(*scene_, step.tool, tool, paths_.solids(k));
   if (coupling) {
     step.rendered = coupling->advance(step.device, step.contact.wrench);
     step.energy = coupling->energy();

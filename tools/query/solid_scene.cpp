@@ -49,6 +49,10 @@ std::string misfit_of_solids(std::size_t given, std::size_t solids) {
          ", but --solid is given " + std::to_string(solids) + (solids == 1 ? " time" : " times");
 }
 
+void check_moving_solids(const std::string& file, std::size_t moving, std::size_t solids) {
+  if (moving > 0 && moving != solids) refuse(misfit_of_solids(moving, solids), file, kSolidsAdvice);
+}
+
 nlohmann::ordered_json bodies_of(const std::vector<Result>& parts) {
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   for (const Result& part : parts) {

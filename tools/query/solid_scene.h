@@ -34,6 +34,8 @@ void check_surfaces(std::span<const Tool> tools, const std::vector<std::string>&
 
 // Says that there are poses of `given` solids, but another number of --solid.
 std::string misfit_of_solids(std::size_t given, std::size_t solids);
+// Throws Error(refused), naming the file, if a path moves solids, but another number.
+void check_moving_solids(const std::string& file, std::size_t moving, std::size_t solids);
 inline constexpr const char* kSolidsAdvice = "give one for each, or leave \"solids\" out";
 
 // Returns the list of `bodies` in a line of results.

@@ -6,6 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "tools/common/recorded_frames.h"
+#include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
@@ -47,15 +48,25 @@ TimedPath common_time(const std::vector<TimedPath>& paths) {
 
 }  // namespace
 
-ToolPaths::ToolPaths(const Program& program, const std::vector<std::string>& names, double rate) {
+ToolPaths::ToolPaths(const Program& program, const std::vector<std::string>& names, double rate,
+                     std::size_t solids) {
   for (const std::string& name : names) paths_.push_back(read_path(program, name));
   check_alike(names, paths_);
+  check_moving_solids(names.front(), paths_.front().solids(), solids);
+  for (std::size_t k = 1; k < paths_.size(); ++k)
+    if (paths_[k].solids() > 0)
+      refuse("\"solids\" move with the first path only", names[k], "give them in " + names.front());
   steps_.emplace(has_times() ? common_time(paths_) : paths_.front(), rate);
 }
 
 Pose ToolPaths::pose(std::size_t tool, std::size_t step) const {
   const TimedPath& path = paths_[std::min(tool, paths_.size() - 1)];  // or one for all
   return has_times() ? path.at(start() + time(step)) : path.poses()[step];
+}
+
+std::vector<Pose> ToolPaths::solids(std::size_t step) const {
+  const TimedPath& path = paths_.front();
+  return has_times() ? path.solids_at(start() + time(step)) : path.solids_of(step);
 }
 
 }  // namespace vpm::tools

@@ -75,6 +75,29 @@ $ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --view v.htm
 $ vpm-query --tool cube.vpmg --solid - --pose 0,0,0,0,0,0,1
 2> vpm-query: error: --solid is a file: standard input holds none
 [2]
-$ printf '%s\n' '{"time":0,"pose":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0,1]]}' > path.txt; vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --coupling stiffness=500,damping=5 --stiffness 2e4
-2> vpm-query: error: path.txt, line 1: "solids" do not move along a path; leave them out
+
+# Along paths solids move as the tool does, between poses too: each step has the answer of its poses alone.
+$ printf '%s\n' '{"time":0,"tool":[0,0,0,0,0,0,1],"solids":[[0.19,0,0,0,0,0,1]]}' '{"time":0.02,"tool":[0.001,0,0,0,0,0,1],"solids":[[0.17,0,0,0,0,0,1]]}' > path.jsonl
+$ vpm-query --tool cube.vpmg --solid cube.off --poses path.jsonl --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet > steps.jsonl && $VALIDATE coupling-step steps.jsonl
+$ python3 -c "import json; [print(json.dumps({'tool': s['tool'], 'solids': [[0.19 - 0.001 * s['step'], 0, 0, 0, 0, 0, 1]]})) for s in map(json.loads, open('steps.jsonl'))]" > alone.jsonl && wc -l < alone.jsonl
+21
+$ vpm-query --tool cube.vpmg --solid cube.off --poses alone.jsonl > answers.jsonl && python3 -c "import json; print(max(abs(json.loads(a)['volume'] - json.loads(b)['volume']) for a, b in zip(open('steps.jsonl'), open('answers.jsonl'))) < 1e-12)"
+True
+$ tail -n 1 steps.jsonl | python3 -c "import json; s = json.loads(input()); print(s['volume'] > 6e-4, s['tool'][0] < s['device'][0], s['force'][0] < 0)"
+True True True
+$ mkdir frames && cp wall.vpmc frames/0.0.vpmc && cp wall.vpmc frames/0.01.vpmc
+$ vpm-query --tool cube.vpmg --solid cube.off --frames frames --poses path.jsonl --quiet > steps.jsonl && python3 -c "import json; print(max(abs(s['volume'] - 0.04 * (0.01 + 1.05e-3 * s['pose'])) for s in map(json.loads, open('steps.jsonl'))) < 1e-10)"
+True
+$ vpm-query --tool cube.vpmg --tool cube.vpmg --solid cube.off --frames frames --poses path.jsonl --quiet | sed -n 's/"tool":1,//p' | cmp - steps.jsonl
+$ vpm-query --tool cube.vpmg --tool cube.vpmg --solid cube.off --frames frames --poses path.jsonl --poses path.jsonl
+2> vpm-query: error: path.jsonl: "solids" move with the first path only; give them in path.jsonl
 [1]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.jsonl --coupling stiffness=500,damping=5 --stiffness 2e4
+2> vpm-query: error: path.jsonl: "solids" has 1 pose, but --solid is given 0 times; give one for each, or leave "solids" out
+[1]
+$ vpm-query --tool cube.vpmg --frames frames --poses path.jsonl --camera-poses path.jsonl --quiet
+2> vpm-query: error: path.jsonl: "solids" has 1 pose, but --solid is given 0 times; give one for each, or leave "solids" out
+[1]
+
+# Bodies of batches are those of single poses.
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies > one.jsonl && vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies --batch 2 | cmp - one.jsonl
