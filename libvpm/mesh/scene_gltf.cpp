@@ -6,12 +6,14 @@
 #include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/scalar_type.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/mesh/gltf_json.h"
+#include "libvpm/mesh/gltf_nodes.h"
 #include "libvpm/mesh/gltf_plain.h"
 #include "libvpm/mesh/scene_header.h"
 
@@ -54,8 +56,8 @@ void note_rest(std::string_view gltf, GltfHeader& header) {
 // True for extensions that are read, that say how a surface looks or what stands beside it, and for
 // the compression that assimp may unpack; where it cannot, it says so.
 bool is_readable(const std::string& extension) {
-  for (const char* const read :
-       {"KHR_draco_mesh_compression", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"})
+  for (const char* const read : {"KHR_draco_mesh_compression", "KHR_mesh_quantization",
+                                 "EXT_mesh_gpu_instancing", "KHR_node_visibility"})
     if (extension == read) return true;
   const std::string name = file::in_lower_case(extension);
   for (const char* const part : {"material", "texture", "light", "image", "xmp", "audio"})
@@ -147,19 +149,6 @@ void take_skins(const json& content, GltfHeader& header) {
   header.keeps_skin = header.keeps_skin && header.has_skin;
 }
 
-// Returns the indices of the nodes that are no other's children.
-json roots_of(const json& content) {
-  const json& nodes = member(content, "nodes");
-  std::set<std::uint64_t> children;
-  for (const json& node : nodes)
-    for (const json& child : member(node, "children"))
-      if (child.is_number_unsigned()) children.insert(child.get<std::uint64_t>());
-  json roots = json::array();
-  for (std::uint64_t k = 0; nodes.is_array() && k < nodes.size(); ++k)
-    if (!children.contains(k)) roots.push_back(k);
-  return roots;
-}
-
 // True if a mesh or a node gives a morph target a weight.
 bool has_morph(const json& content) {
   for (const char* const list : {"meshes", "nodes"})
@@ -169,24 +158,30 @@ bool has_morph(const json& content) {
   return false;
 }
 
-}  // namespace
-
-std::string with_scene(std::string_view gltf) {
-  constexpr std::size_t kLengthAt = 8, kJsonLengthAt = 12;
-  const std::string_view text = json_of(gltf);
-  const auto first = static_cast<std::size_t>(text.data() - gltf.data());
-  // Goes before other members, of which none is read that has the same key.
-  std::string members = R"("scene":0,"scenes":[{"nodes":)" +
-                        roots_of(json::parse(text, nullptr, false)).dump() + "}],";
-  members.resize((members.size() + 3) / 4 * 4, ' ');
-  std::string changed(gltf);
-  changed.insert(first + text.find('{') + 1, members);
-  if (gltf.starts_with("glTF")) {
-    put_number(changed, kLengthAt, file::unsigned_at(gltf, kLengthAt) + members.size());
-    put_number(changed, kJsonLengthAt, text.size() + members.size());
-  }
-  return changed;
+// Returns the file with this JSON in place of its own.
+std::string with_json(std::string_view gltf, const json& content) {
+  constexpr std::size_t kHeader = 20, kLengthAt = 8, kJsonLengthAt = 12;
+  std::string text = content.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (!gltf.starts_with("glTF")) return text;
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::size_t before = json_of(gltf).size();
+  std::string changed(gltf.substr(0, kHeader));
+  put_number(changed, kLengthAt, file::unsigned_at(gltf, kLengthAt) - before + text.size());
+  put_number(changed, kJsonLengthAt, text.size());
+  return changed + text + std::string(gltf.substr(kHeader + before));
 }
+
+// Lists all nodes in a scene where the file has none, since assimp reads only those of one; returns
+// false where it has one, or no nodes that one could show.
+bool give_scene(json& content) {
+  const json roots = roots_of(content);
+  if (!member(content, "scenes").empty() || roots.empty()) return false;
+  content["scene"] = 0;
+  content["scenes"] = json::array({{{"nodes", roots}}});
+  return true;
+}
+
+}  // namespace
 
 std::string percent_decoded(std::string_view text) {
   std::string decoded;
@@ -203,21 +198,28 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
+GltfHeader gltf_header(std::string_view bytes, const std::string& name, const std::string& node) {
   GltfHeader header;
-  const json content = json::parse(json_of(bytes), nullptr, false);
+  json content = json::parse(json_of(bytes), nullptr, false);
   if (!content.is_object()) return header;  // assimp says what is wrong
   check_required(content, name);
   check_buffers(content, bytes.starts_with("glTF"), name);
   note_rest(bytes, header);
+  const bool has_scene = !give_scene(content);
+  if (!has_scene) header.notes.push_back("it has no scene, and so all of its nodes are read");
+  const bool has_names = !name_nodes(content);
+  const std::vector<std::string> hidden = hide_nodes(content, node, name);
+  if (!hidden.empty())
+    header.notes.push_back(std::to_string(hidden.size()) +
+                           (hidden.size() == 1 ? " node is" : " nodes are") +
+                           " left out as hidden (KHR_node_visibility): " + file::listed(hidden));
   take_skins(content, header);
-  header.has_scene = !member(content, "scenes").empty() || roots_of(content).empty();
-  if (!header.has_scene)
-    header.notes.push_back("it has no scene, and so all of its nodes are read");
   if (has_morph(content))
     header.notes.push_back(
         "its morph targets have weights, which are not applied: check its shape");
   header.plain = as_plain_gltf(content, chunk_of(bytes), name, file::most_memory(bytes.size()));
+  if (!header.plain && !(has_scene && has_names && hidden.empty()))
+    header.plain = with_json(bytes, content);
   return header;
 }
 

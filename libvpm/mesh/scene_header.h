@@ -24,16 +24,13 @@ struct GltfHeader {
   std::vector<std::string> notes;
   bool has_skin = false;
   bool keeps_skin = false;           // assimp can read the skins; it crashes on others
-  bool has_scene = true;             // or no nodes that one could show
   std::optional<std::string> plain;  // the file for assimp, where that must be another one
 };
 
-// Reads the JSON of a glTF file, binary or text. Throws Error(refused) if it requires an extension
-// that changes the mesh, or a file that is not there.
-GltfHeader gltf_header(std::string_view bytes, const std::string& name);
-
-// Returns the glTF file, which has none, with a scene of all its nodes.
-std::string with_scene(std::string_view gltf);
+// Reads the JSON of a glTF file, binary or text, of which the given node is wanted, or all without
+// a name. Throws Error(refused) if it requires an extension that changes the mesh, or a file that
+// is not there, or if what is wanted is hidden.
+GltfHeader gltf_header(std::string_view bytes, const std::string& name, const std::string& node);
 
 // Returns the glTF file, of the same size, with the keys of its skins renamed, so that they are
 // passed over.

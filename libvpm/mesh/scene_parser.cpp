@@ -377,10 +377,8 @@ std::optional<RawMesh> read_apart(std::string_view bytes, const std::string& nam
 // Reads glTF: with its skins where assimp can, otherwise without.
 std::optional<RawMesh> read_gltf(std::string_view bytes, const std::string& name,
                                  const std::string& node) {
-  const GltfHeader header = gltf_header(bytes, name);
+  const GltfHeader header = gltf_header(bytes, name, node);
   if (header.plain) bytes = *header.plain;
-  const std::string shown = header.has_scene ? "" : with_scene(bytes);
-  if (!header.has_scene) bytes = shown;
   auto mesh = header.keeps_skin ? read_apart(bytes, name, MeshFormat::gltf, node) : std::nullopt;
   if (!mesh) {
     mesh = read_apart(without_skins(bytes), name, MeshFormat::gltf, node);

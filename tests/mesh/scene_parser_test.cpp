@@ -380,6 +380,85 @@ TEST(Gltf, InstancesAreRead) {
     expect_refusal(glb("", instances(wrong)), "a.glb", "the numbers of its meshes cannot be read");
 }
 
+// Returns the members of a node that its file hides, or shows.
+std::string visible(bool is_visible) {
+  return std::string(R"(,"extensions":{"KHR_node_visibility":{"visible":)") +
+         (is_visible ? "true" : "false") + "}}";
+}
+
+// Hidden nodes are no part of the solid, and neither are those below them, whatever they say.
+TEST(Gltf, HiddenNodesAreLeftOutAndNamed) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string tip = R"(,{"name":"tip","mesh":0,"translation":[3,0,0])",
+                    lid = R"(,{"name":"lid","mesh":0,"translation":[6,0,0])", end = "}";
+  const auto tree = R"(,"children":[1],"translation":[1,0,0])";
+  const auto below = R"(,"children":[2])";
+  for (const std::string used : {"", R"(,"extensionsUsed":["KHR_node_visibility"])",
+                                 R"(,"extensionsRequired":["KHR_node_visibility"])"}) {
+    const RawMesh one =
+        parse(glb(used, tree, tip + below + end + lid + visible(false) + end), "a.glb");
+    EXPECT_EQ(one.polygon_count(), 24U);
+    expect_note(one, "1 node is left out as hidden (KHR_node_visibility): lid");
+    const RawMesh both = parse(
+        glb(used, tree, tip + below + visible(false) + end + lid + visible(true) + end), "a.glb");
+    EXPECT_EQ(both.polygon_count(), 12U);
+    expect_note(both, "2 nodes are left out as hidden (KHR_node_visibility): tip, lid");
+    EXPECT_NEAR(both.vertices.front().x, .75, .26) << "what stays is where it was";
+  }
+  const std::string all = glb("", tree + visible(false), tip + below + end + lid + end);
+  expect_refusal(all, "a.glb",
+                 "all of its meshes are hidden (KHR_node_visibility): skin, tip, lid");
+  const RawMesh shown = parse(glb("", tree + visible(true), tip + visible(true) + end), "a.glb");
+  EXPECT_EQ(shown.polygon_count(), 24U);
+  EXPECT_EQ(all_notes(shown).find("hidden"), std::string::npos);
+  // A group without a mesh hides what is below; a node that is asked for by name is refused.
+  const std::string group =
+      glb("", tree, R"(,{"name":"group")" + std::string(below) + visible(false) + end + lid + end);
+  expect_note(parse(group, "a.glb"), "1 node is left out as hidden (KHR_node_visibility): lid");
+  for (const std::string name : {"lid", "group"}) {
+    std::string refusal;
+    try {
+      node_of(group, name);
+    } catch (const Error& fault) {
+      refusal = fault.what();
+    }
+    EXPECT_NE(refusal.find("its node '" + name + "' is hidden"), refusal.npos) << refusal;
+  }
+  // Instances and integers, which are made plain before, are hidden alike.
+  const std::string hides_and_repeats =
+      R"(,"extensions":{"KHR_node_visibility":{"visible":false},"EXT_mesh_gpu_instancing":)"
+      R"({"attributes":{"TRANSLATION":0}}})";
+  EXPECT_EQ(parse(glb("", tree, tip + hides_and_repeats + end), "a.glb").polygon_count(), 12U);
+  expect_refusal(quantized(5122, true, -32767, 32767, visible(false)), "a.glb", "hidden");
+  // A file of two scenes, or of none, is judged by what is read of it; one of loops ends.
+  const std::string outside = glb("", "", tip + visible(false) + end);
+  EXPECT_EQ(all_notes(parse(outside, "a.glb")).find("hidden"), std::string::npos);
+  std::string none = outside;
+  const std::string scenes = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+  none.replace(none.find(scenes), scenes.size(), std::string(scenes.size(), ' '));
+  expect_note(parse(none, "a.glb"), "1 node is left out as hidden (KHR_node_visibility): tip");
+  refusal_of(glb("", tree + visible(false), tip + R"(,"children":[0,1,9,-1,"x"])" + end), "a.glb");
+}
+
+// Nodes without a name are told by their places in the file, and chosen by them.
+TEST(Gltf, NodesWithoutANameAreToldByTheirPlaces) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string bare = R"(,{"mesh":0,"translation":[3,0,0])", end = "}";
+  const std::string tree = R"(,"children":[1,2])";
+  const std::string content = glb("", tree, bare + R"(,"name":"")" + end + bare + end);
+  expect_note(parse(content, "a.glb"), "the meshes of 3 nodes are joined: skin, node 1, node 2");
+  EXPECT_EQ(node_of(content, "node 2").polygon_count(), 12U);
+  EXPECT_NEAR(node_of(content, "node 2").vertices.front().x, 3, .26);
+  expect_note(parse(glb("", tree, bare + end + bare + visible(false) + end), "a.glb"),
+              "1 node is left out as hidden (KHR_node_visibility): node 2");
+  const std::string instances =
+      R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}})";
+  const std::string repeated = glb("", R"(,"children":[1])", bare + instances + end);
+  expect_note(parse(repeated, "a.glb"), "node 1 instance 1, node 1 instance 2");
+  EXPECT_EQ(node_of(repeated, "node 1").polygon_count(), 8 * 12U);
+  EXPECT_EQ(node_of(repeated, "node 1 instance 2").polygon_count(), 12U);
+}
+
 TEST(Gltf, RequiredExtensionsAreNamed) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
   for (const std::string name : {"EXT_meshopt_compression", "EXT_of_tomorrow"}) {

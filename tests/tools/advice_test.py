@@ -71,6 +71,7 @@ UNTRIED = [
         "--resume compares files with those of the run before: name one for --", ".part: --resume goes on after them",
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
     ]),
+    ("of glTF whose nodes are hidden: tests/mesh", ["show it in the program that wrote the file, and export it again"]),
     ("two runs at once write one file", ["wait for its end, or name another output"]),
     ("an answer of vpm-query --serve: cases/serve.t", [
         'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',

@@ -1,0 +1,107 @@
+#include "libvpm/mesh/gltf_nodes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
+#include "libvpm/mesh/gltf_json.h"
+
+namespace vpm {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kVisibility = "KHR_node_visibility";
+constexpr const char* kShow = "show it in the program that wrote the file, and export it again";
+
+bool hides(const json& node) {
+  return member(member(member(node, "extensions"), kVisibility), "visible") == false;
+}
+
+// Returns the topmost nodes of the scene that is read: the one that the file names, or its first.
+const json& top_nodes(const json& content) {
+  const json& scenes = member(content, "scenes");
+  const json& named = element(scenes, member(content, "scene"));
+  const bool has_any = scenes.is_array() && !scenes.empty();
+  return member(!named.is_null() || !has_any ? named : scenes.front(), "nodes");
+}
+
+// Tells of each node whether the scene shows it. A node that it reaches twice, which glTF forbids,
+// is hidden if either way is.
+struct Reached {
+  std::set<std::uint64_t> shown, hidden;
+};
+
+Reached reached_nodes(const json& content) {
+  const json& nodes = member(content, "nodes");
+  Reached reached;
+  std::vector<std::pair<json, bool>> open;  // index of a node, and whether one above is hidden
+  for (const json& top : top_nodes(content)) open.emplace_back(top, false);
+  while (!open.empty()) {
+    const auto [index, is_below_hidden] = std::move(open.back());
+    open.pop_back();
+    const json& node = element(nodes, index);
+    if (!node.is_object()) continue;
+    const bool is_hidden = is_below_hidden || hides(node);
+    auto& seen = is_hidden ? reached.hidden : reached.shown;
+    if (!seen.insert(index.get<std::uint64_t>()).second) continue;
+    for (const json& child : member(node, "children")) open.emplace_back(child, is_hidden);
+  }
+  for (const std::uint64_t index : reached.hidden) reached.shown.erase(index);
+  return reached;
+}
+
+}  // namespace
+
+json roots_of(const json& content) {
+  const json& nodes = member(content, "nodes");
+  std::set<std::uint64_t> children;
+  for (const json& node : nodes)
+    for (const json& child : member(node, "children"))
+      if (child.is_number_unsigned()) children.insert(child.get<std::uint64_t>());
+  json roots = json::array();
+  for (std::uint64_t k = 0; nodes.is_array() && k < nodes.size(); ++k)
+    if (!children.contains(k)) roots.push_back(k);
+  return roots;
+}
+
+bool name_nodes(json& content) {
+  if (!member(content, "nodes").is_array()) return false;
+  bool names_any = false;
+  std::size_t place = 0;
+  for (json& node : content["nodes"]) {
+    const std::size_t k = place++;
+    if (!node.is_object() || !text_of(member(node, "name")).empty()) continue;
+    node["name"] = "node " + std::to_string(k);
+    names_any = true;
+  }
+  return names_any;
+}
+
+std::vector<std::string> hide_nodes(json& content, const std::string& chosen,
+                                    const std::string& file) {
+  const Reached reached = reached_nodes(content);
+  const json& nodes = member(content, "nodes");
+  std::vector<std::string> lost;
+  bool is_chosen = false;
+  for (const std::uint64_t k : reached.hidden) {
+    const std::string name = text_of(member(nodes[k], "name"));
+    is_chosen = is_chosen || (name == chosen && !chosen.empty());
+    if (content["nodes"][k].erase("mesh") > 0) lost.push_back(name);
+  }
+  bool keeps_mesh = false;
+  for (const std::uint64_t k : reached.shown) {
+    keeps_mesh = keeps_mesh || !member(nodes[k], "mesh").is_null();
+    is_chosen = is_chosen && text_of(member(nodes[k], "name")) != chosen;
+  }
+  const std::string by = std::string(" (") + kVisibility + ")";
+  if (is_chosen) refuse("its node '" + file::shown(chosen) + "' is hidden" + by, file, kShow);
+  if (!lost.empty() && !keeps_mesh)
+    refuse("all of its meshes are hidden" + by + ": " + file::listed(lost), file, kShow);
+  return lost;
+}
+
+}  // namespace vpm
