@@ -369,8 +369,8 @@ TEST(PublicApi, AScenesScaleIsThatOfItsPoints) {
     EXPECT_EQ(kind_for(floor(0.01), radius), vpm::ErrorKind::invalid_argument) << radius;
   const vpm::Scene solids({vpm::Body(vpm::SolidBody(tool()), {})});
   EXPECT_EQ(kind_for(solids, 0.1), vpm::ErrorKind::invalid_argument);
-  const vpm::Scene few(vpm::PointCloud::from_points(std::vector<vpm::Vec3>{{0, 0, 0}},
-                                                    std::vector<vpm::Vec3>{{0, 0, 1}}));
+  const vpm::Scene few(vpm::PointCloud::from_points(std::vector<vpm::Vec3>{{0, 0, 0}, {.01, 0, 0}},
+                                                    std::vector<vpm::Vec3>{{0, 0, 1}, {0, 0, 1}}));
   EXPECT_EQ(kind_for(few, 0.1), vpm::ErrorKind::refused);
 }
 

@@ -285,7 +285,7 @@ def write_poses(folder):
     files = {
         "poses.txt": pose + "\n", "timed.txt": f"0 {pose}\n1 {pose}\n", "back.txt": f"1 {pose}\n0 {pose}\n",
         "some_timed.txt": f"0 {pose}\n{pose}\n", "matrix_pose.txt": matrix, "none.txt": "# none\n",
-        "six.txt": "0 0 0.95 0 0 0\n", "nine.txt": "0 0 0.95 0 0 0 1 0 0\n", "comma.txt": "0,0,,0.95,0,0,0,1\n",
+        "five_of_pose.txt": "0 0 0.95 0 0\n", "nine.txt": "0 0 0.95 0 0 0 1 0 0\n", "comma.txt": "0,0,,0.95,0,0,0,1\n",
         "long.txt": "0,0,0.95,0,0,0,2\n", "wxyz.txt": "0 0 0.95 1 0 0 0\n",
         "header.txt": "# tx ty tz qw qx qy qz\n0 0 0.95 1 0 0 0\n", "header_six.txt": "# tx ty tz qw qx qy qz\n0 0 0.95 1 0 0\n",
         "pose.jsonl": '{"pose": [0, 0, 0.95, 0, 0, 0, 1]}\n',

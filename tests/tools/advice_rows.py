@@ -422,7 +422,7 @@ COMMANDS = [
     (f"{TOOL} --poses poses.txt --no-points", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     (f"{TOOL} --poses poses.txt --standby-us 9", "is gone: leave it out", f"{TOOL} --poses poses.txt", WALL),
     ("vpm-query --tool - --cloud - --poses poses.txt",
-     "only one of --tool, --cloud and --poses can be standard input",
+     "only one of --tool, --cloud, --pairs and --poses can be standard input",
      "vpm-query --tool small.vpmg --cloud - --poses poses.txt < wall.vpmc", WALL),
     # Couplings
     (COUPLED.replace(" --stiffness 2e4", "") + " --coupling stiffness=500,damping=5",
@@ -447,7 +447,7 @@ COMMANDS = [
     *[(f"{TOOL} --poses none.txt", "each line gives one: tx ty tz qx qy qz qw, or JSON", f"{TOOL} --poses {name}", WALL)
       for name in ("poses.txt", "pose.jsonl")],
     *[(f"{TOOL} --poses {bad}", r"a pose has 7 \(tx ty tz qx qy qz qw\), 8 \(with a time before them\) or 16 \(4x4, row by row\)",
-       f"{TOOL} --poses {good}", WALL) for bad in ("six.txt", "nine.txt") for good in ("poses.txt", "timed.txt",
+       f"{TOOL} --poses {good}", WALL) for bad in ("five_of_pose.txt", "nine.txt") for good in ("poses.txt", "timed.txt",
        "matrix_pose.txt")],
     (f"{TOOL} --poses wall.pgm", "write poses as lines tx ty tz qx qy qz qw, as JSON or as .npy",
      f"echo '0 0 0.95 0 0 0 1' | {TOOL} --poses -", WALL),

@@ -72,6 +72,13 @@ UNTRIED = [
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
     ]),
     ("of glTF whose nodes are hidden: tests/mesh", ["show it in the program that wrote the file, and export it again"]),
+    ("stands in a transcript: cases/pairs.t", [
+        "chosen by --pairs", ": leave --unit out", ": give holes, voxel, voxel=RES, flood or flood=RES", 'write {"',
+        "write it in quotation marks", "name the part's file", 'write {"parts": ["shaft", "hub"]}',
+        "give the volume that the two may share, in the unit's cube", "write it in brackets, [ … ]", 'give each a "name" of its own',
+        "give m, cm, mm, um, in or ft", "is a mesh: give the folder of all parts, or a description (assembly.json)", 'write {"id": "',
+        "--unit mm", "another --unit",
+    ]),
     ("two runs at once write one file", ["wait for its end, or name another output"]),
     ("an answer of vpm-query --serve: cases/serve.t", [
         'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',
@@ -100,6 +107,7 @@ UNTRIED = [
         ", which is no number; pack the mesh again, or leave --mesh out", "choose one of the size of the gaps between them",
     ]),
     ("takes a large input, or many seconds: tests/mesh/broad_phase_test.cpp, tests/faults", [
+        "more such warnings; --verbose shows them",
         "not all gaps were searched, so larger spheres may fit; a higher --spheres searches more",
         "delete doubled or tangled parts, or give `repair` voxel for a new surface",
         "`repair` holes, voxel or flood may close it, or mend it in a mesh editor",
