@@ -70,8 +70,8 @@ UNTRIED = [
         "--poses has several values; leave all but one out: only several --tool with --frames have a path each",
         "--resume compares files with those of the run before: name one for --", ".part: --resume goes on after them",
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
+        "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),
-    ("of glTF whose nodes are hidden: tests/mesh", ["show it in the program that wrote the file, and export it again"]),
     ("stands in a transcript: cases/pairs.t", [
         "chosen by --pairs", ": leave --unit out", ": give holes, voxel, voxel=RES, flood or flood=RES", 'write {"',
         "write it in quotation marks", "name the part's file", 'write {"parts": ["shaft", "hub"]}',

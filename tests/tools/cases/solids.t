@@ -101,3 +101,9 @@ $ vpm-query --tool cube.vpmg --frames frames --poses path.jsonl --camera-poses p
 
 # Bodies of batches are those of single poses.
 $ vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies > one.jsonl && vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies --batch 2 | cmp - one.jsonl
+$ sed '2s/,"solids.*/}/' path.jsonl > uneven.jsonl && vpm-query --tool cube.vpmg --solid cube.off --frames frames --poses uneven.jsonl --quiet
+2> vpm-query: error: uneven.jsonl, line 2: "solids" has 0 poses, and those before have 1; give every pose of a path as many, or none
+[1]
+$ sed 's/,"solids.*/}/' path.jsonl > still.jsonl && vpm-query --tool cube.vpmg --frames frames --poses still.jsonl --camera-poses path.jsonl --quiet
+2> vpm-query: error: path.jsonl, line 2: "solids" do not move with the camera; give them with the tool's
+[1]
