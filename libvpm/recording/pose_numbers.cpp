@@ -129,8 +129,7 @@ Pose from_untimed(const std::vector<double>& n, double* deviation) {
   } else if (n.size() == kThreeRows || n.size() == kMatrix) {
     pose = from_matrix(n, "the last row of a 4x4 pose must be 0 0 0 1", deviation);
   } else if (n.size() == kAnglesPose) {
-    refuse("found 6 numbers, like a position with three angles or a rotation vector", {},
-           kAnglesHint);
+    refuse("found 6 numbers, like a position with three angles", {}, kAnglesHint);
   } else {
     refuse("found " + std::to_string(n.size()) + " numbers", {},
            "a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by "

@@ -13,8 +13,8 @@ inline constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kThreeRows = 1
                              kMatrixRow = 4;
 inline constexpr std::size_t kAnglesPose = 6;  // of a position and three angles, which is not read
 inline constexpr const char* kAnglesHint =
-    "write tx ty tz qx qy qz qw: of angles or rotation vectors SciPy's Rotation.from_euler(...) or "
-    "from_rotvec(...), with as_quat(), makes qx qy qz qw";
+    "write tx ty tz qx qy qz qw, the last four by SciPy's Rotation.from_euler(...) or "
+    "from_rotvec(...), with as_quat()";
 
 // Returns the numbers of a line, separated by blanks, single commas or semicolons. Throws a refusal
 // that names the column of anything else.

@@ -458,7 +458,7 @@ COMMANDS = [
     (f"{TOOL} --poses comma.txt", "number 3 is missing: nothing stands between the commas",
      f"{TOOL} --poses <(sed 's/,,/,/' comma.txt)", WALL),
     (f"{TOOL} --poses long.txt", "give x,y,z,w of a unit quaternion", f"{TOOL} --poses <(sed 's/2$/1/' long.txt)", WALL),
-    (f"{TOOL} --poses <(sed '1s/.*/x,y,z,roll,pitch,yaw/' header_six.txt)", "write tx ty tz qx qy qz qw: of angles",
+    (f"{TOOL} --poses <(sed '1s/.*/x,y,z,roll,pitch,yaw/' header_six.txt)", "write tx ty tz qx qy qz qw, the last four by",
      f"{TOOL} --poses header.txt", WALL),
     (f"{TOOL} --poses header_six.txt", r"found 6 numbers where the line of names has (\d)", f"{TOOL} --poses header.txt", WALL),
     (f"{TOOL} --poses nameless.jsonl", r'give "(pose)" \(7 numbers\) or "matrix" \(4x4 by rows\), or "position" with x, y, z',

@@ -50,7 +50,7 @@ $ vpm-query --tool cube.vpmg --solid cube.vpmg --poses moves.jsonl; vpm-query --
 $ for l in '{"tool":[0,0,0,0,0,0,1],"solids":[]}' '{"tool":[0,0,0,0,0,0,1],"solids":[0,0,0,0,0,0,1]}' '{"tool":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0]]}' '{"tool":[0,0,0,0,0,0,1],"solids":[[0,0,0,0,0,0,0]]}' '{"tool":3}'; do echo "$l" | vpm-query --tool cube.vpmg --solid cube.vpmg --poses -; done
 2> vpm-query: error: standard input, line 1: "solids" is no list of poses; write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]
 2> vpm-query: error: standard input, line 1: "solids" is no list of poses; write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]
-2> vpm-query: error: standard input, line 1: solid 0 of "solids": found 6 numbers, like a position with three angles or a rotation vector; write tx ty tz qx qy qz qw: of angles or rotation vectors SciPy's Rotation.from_euler(...) or from_rotvec(...), with as_quat(), makes qx qy qz qw
+2> vpm-query: error: standard input, line 1: solid 0 of "solids": found 6 numbers, like a position with three angles; write tx ty tz qx qy qz qw, the last four by SciPy's Rotation.from_euler(...) or from_rotvec(...), with as_quat()
 2> vpm-query: error: standard input, line 1: solid 0 of "solids": the quaternion has length 0.000000 instead of 1; give x,y,z,w of a unit quaternion
 2> vpm-query: error: standard input, line 1: no pose in the object; it has "tool"; give "pose" (7 numbers) or "matrix" (4x4 by rows), or "position" with x, y, z and "orientation" with x, y, z, w
 [1]
