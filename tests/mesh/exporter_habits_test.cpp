@@ -146,8 +146,8 @@ void expect_unread(const std::string& content, const std::string& name, const st
 }
 
 // Expects a refusal that holds both texts.
-void expect_refusal(const std::string& content, const std::string& name, const std::string& cause,
-                    const std::string& effect) {
+void expect_both_in_refusal(const std::string& content, const std::string& name,
+                            const std::string& cause, const std::string& effect) {
   const std::string refusal = refusal_of(content, name);
   EXPECT_NE(refusal.find(cause), refusal.npos) << refusal;
   EXPECT_NE(refusal.find(effect), refusal.npos) << refusal;
@@ -163,8 +163,9 @@ TEST(Off, WhatFollowsTheCountedFacesIsSaid) {
   expect_unread(replaced(both, "16 24 0", "16 12 0"), "a.off",
                 "the header counts 12 faces, but more follows in line 31, which is not read");
   expect_unread(off + off, "a.off", "another OFF file follows in line 23, which is not read");
-  expect_refusal(replaced(off, "8 12 0", "8 11 0"), "a.off",
-                 "the header counts 11 faces, but more follows in line 22", "the mesh is open");
+  expect_both_in_refusal(replaced(off, "8 12 0", "8 11 0"), "a.off",
+                         "the header counts 11 faces, but more follows in line 22",
+                         "the mesh is open");
   for (const std::string end : {"\n\n", "# an end\n", " ", "\x1a", "\x1a\n"})
     expect_cube(off + end, "a.off", 0.5);
   expect_cube(off + std::string(100, '\0'), "a.off", 0.5);
@@ -173,12 +174,12 @@ TEST(Off, WhatFollowsTheCountedFacesIsSaid) {
 TEST(Off, AFaceReadAsAVertexIsSaid) {
   const std::string off = as_off(make_cube(0.5));
   const std::string cause = "the header counts 9 vertices, but line 11 does not look like one";
-  expect_refusal(replaced(off, "8 12 0", "9 11 0"), "a.off", cause, "the mesh is open");
+  expect_both_in_refusal(replaced(off, "8 12 0", "9 11 0"), "a.off", cause, "the mesh is open");
   // All numbers may fit by chance where they are read as words.
   const std::string quads =
       "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n"
       "4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
-  expect_refusal("OFF\n9 6 0\n" + quads, "a.off", cause, "the mesh is open");
+  expect_both_in_refusal("OFF\n9 6 0\n" + quads, "a.off", cause, "the mesh is open");
   expect_cube("OFF\n8 6 0\n" + replaced(quads, "\n4 3 2", " 4 3 2"), "a.off", 1);
 }
 
@@ -188,18 +189,19 @@ TEST(Ply, WhatFollowsTheCountedElementsIsSaid) {
                 "the header counts 12 faces, but more follows in line");
   const std::string ply = as_ascii_ply(cube);
   expect_unread(ply + ply, "a.ply", "another PLY file follows in line");
-  expect_refusal(replaced(ply, "face 12", "face 11"), "a.ply", "the header counts 11 faces, but",
-                 "the mesh is open");
-  expect_refusal(replaced(replaced(ply, "vertex 8", "vertex 9"), "face 12", "face 11"), "a.ply",
-                 "line 19 holds more numbers than the header says; they are not read",
-                 "the mesh is open");
+  expect_both_in_refusal(replaced(ply, "face 12", "face 11"), "a.ply",
+                         "the header counts 11 faces, but", "the mesh is open");
+  expect_both_in_refusal(
+      replaced(replaced(ply, "vertex 8", "vertex 9"), "face 12", "face 11"), "a.ply",
+      "line 19 holds more numbers than the header says; they are not read", "the mesh is open");
   for (const bool big_endian : {false, true}) {
     const std::string binary = as_binary_ply(cube, big_endian);
     expect_unread(replaced(as_binary_ply(two_cubes(), big_endian), "face 24", "face 12"), "a.ply",
                   "the header counts 12 faces, but 156 bytes more follow at byte");
     expect_unread(binary + binary, "a.ply", "another PLY file follows at byte");
-    expect_refusal(replaced(binary, "face 12", "face 11"), "a.ply",
-                   "the header counts 11 faces, but 13 bytes more follow", "the mesh is open");
+    expect_both_in_refusal(replaced(binary, "face 12", "face 11"), "a.ply",
+                           "the header counts 11 faces, but 13 bytes more follow",
+                           "the mesh is open");
     for (const std::string end : {"\n", "\r\n", "\x1a"}) expect_cube(binary + end, "a.ply", 0.5);
     expect_cube(binary + '\0', "a.ply", 0.5);
   }
@@ -330,8 +332,9 @@ TEST(AsciiStl, MayLackItsLastLine) {
   const std::string cut = stl.substr(0, stl.find("endsolid"));
   expect_cube(cut, "a.stl", 0.5, "the file ends without 'endsolid', after 12 whole facets");
   // Where facets are missing, that is what is wrong with the mesh.
-  expect_refusal(cut.substr(0, cut.rfind("facet normal")), "a.stl",
-                 "the file ends without 'endsolid', after 11 whole facets", "the mesh is open");
+  expect_both_in_refusal(cut.substr(0, cut.rfind("facet normal")), "a.stl",
+                         "the file ends without 'endsolid', after 11 whole facets",
+                         "the mesh is open");
   EXPECT_NE(refusal_of(cut.substr(0, cut.rfind("endfacet")), "a.stl").find("truncated"), cut.npos);
 }
 

@@ -24,7 +24,7 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
   using Normal = OpenMesh::Vec3d;
 };
 
-RawMesh parse(const std::string& content) {
+RawMesh mesh_of_om(const std::string& content) {
   return parse_mesh(std::as_bytes(std::span(content)), "a.om");
 }
 
@@ -66,9 +66,9 @@ constexpr Options::value_type kAttributes[] = {0,
 
 TEST(OmParser, ReadsFloatsAndDoublesWithEveryAttribute) {
   for (const Options::value_type attributes : kAttributes) {
-    const RawMesh single = parse(tetrahedron<OpenMesh::DefaultTraits>(attributes));
+    const RawMesh single = mesh_of_om(tetrahedron<OpenMesh::DefaultTraits>(attributes));
     EXPECT_NEAR(make_solid(single).facts.volume, 1.0 / 6, 1e-8) << attributes;
-    const RawMesh precise = parse(tetrahedron<DoubleTraits>(attributes));
+    const RawMesh precise = mesh_of_om(tetrahedron<DoubleTraits>(attributes));
     EXPECT_NEAR(make_solid(precise).facts.volume, 1.0 / 6, 1e-15) << attributes;
     EXPECT_EQ(precise.vertices.at(3), (Vec3{0.1, 0.2, 1})) << attributes;
   }
@@ -87,7 +87,7 @@ TEST(OmParser, RefusesChunksThatMakeNoSense) {
       damaged[chunk] = static_cast<char>(word % 256);
       damaged[chunk + 1] = static_cast<char>(word / 256);
       try {
-        for (const RawMesh mesh = parse(damaged); const std::uint32_t corner : mesh.corners)
+        for (const RawMesh mesh = mesh_of_om(damaged); const std::uint32_t corner : mesh.corners)
           ASSERT_LT(corner, mesh.vertices.size());
       } catch (const Error& fault) {
         ASSERT_EQ(fault.kind(), ErrorKind::refused);
@@ -100,7 +100,7 @@ TEST(OmParser, RefusesAMeshGivenTwice) {
   std::string twice = tetrahedron<OpenMesh::DefaultTraits>(0);
   const std::string positions = twice.substr(16, 2 + 4 * 12);
   twice.insert(16, positions);
-  EXPECT_NE(refusal([&] { parse(twice); }).find("a second time"), std::string::npos);
+  EXPECT_NE(refusal([&] { mesh_of_om(twice); }).find("a second time"), std::string::npos);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 
     advice_test.py --bin DIR[:DIR...] [--row TEXT]
 
-A row of advice_rows.py is a command line that is refused or warned, a pattern that finds the advice in its messages, a command
-line that follows the advice (`{0}` stands for the first group of the pattern: the message's own words), and where it gives one
-the volume that comes out then. The second command must succeed, and say the advice no more. Files named out* are removed before
+A row of advice_meshes.py, advice_scans.py or advice_commands.py is a command line that is refused or warned, a pattern that
+finds the advice in its messages, a command line that follows the advice (`{0}` stands for the first group of the pattern: the
+message's own words), and where it gives one the volume that comes out then. The second command must succeed, and say the advice no more. Files named out* are removed before
 each command. Messages in the sources that advise something and that no row has met are faults too, except those in UNTRIED.
 
 Inputs are made by advice_files.py. Rows about a format that this build does not read are passed over. --row runs only the rows
@@ -21,7 +21,10 @@ import sys
 import tempfile
 
 import advice_files
-from advice_rows import ASK, CAMERA, COMMANDS, MESHES, POINTS, SCANS, WALL
+from advice_commands import COMMANDS
+from advice_meshes import MESHES
+from advice_scans import SCANS
+from advice_words import ASK, CAMERA, POINTS, WALL
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SECONDS = 120
