@@ -125,15 +125,10 @@ struct OverlapTree::Build {
     node.right = right;
     node.family = at(node.begin).family;
     if (left == 0) {
-      for (std::size_t k = node.begin; k < node.end; ++k) {
-        const Box box = box_of(at(k));
-        node.box.add(box.low);
-        node.box.add(box.high);
-      }
+      for (std::size_t k = node.begin; k < node.end; ++k) node.box.add_box(box_of(at(k)));
     } else {
       for (const std::uint32_t child : {left, right}) {
-        node.box.add(tree.nodes_[child].box.low);
-        node.box.add(tree.nodes_[child].box.high);
+        node.box.add_box(tree.nodes_[child].box);
         if (tree.nodes_[child].family != node.family) node.family = kNone;
       }
     }

@@ -22,8 +22,9 @@ int DepthCells::inside_at(Vec3 middle, std::size_t edge, const Part& part,
   return std::clamp(is_inside, 0, 1);
 }
 
-// The first half has the corners u, m, apex and the second m, v, apex of the edge from u to v with
-// middle m; edge 0 of both lies on that edge.
+// The part's edge runs from u to v, with the middle m, and its third corner is the apex. The first
+// half is the triangle u, m, apex, the second m, v, apex; so the edge 0 of both is half of that
+// edge.
 DepthCells::Part DepthCells::half(const Part& part, std::size_t edge, Vec3 middle, int is_inside,
                                   bool is_first, std::size_t segments, std::size_t points) {
   const std::size_t next = (edge + 1) % 3, opposite = (edge + 2) % 3;

@@ -119,28 +119,21 @@ void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triang
     of_b.add_edge_crossing(at, per_unit_ * at.place);
   }
   if (!with_force_) return;
-  const double length = norm(end - start);
-  const auto place_of = [](const Role& role, const CrossedTriangle& t) {
-    return role.crossed_place[t.triangle];
-  };
-  if (of_a.is_large)
-    keep_cuts(roles_[0], of_a, {start, end, place_of(roles_[1], of_b)},
-              std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
-  else
-    of_a.add_plane(of_b.normal, dot(of_b.normal, of_b.corner[0]), length);
-  if (of_b.is_large)
-    keep_cuts(roles_[1], of_b, {end, start, place_of(roles_[0], of_a)},
-              std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
-  else
-    of_b.add_plane(of_a.normal, dot(of_a.normal, of_a.corner[0]), length);
+  add_cut(0, of_a, of_b, {start, end, 0},
+          std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
+  add_cut(1, of_b, of_a, {end, start, 0},
+          std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
 }
 
-bool SurfacePair::is_large(const Role& role, std::uint32_t triangle) const {
-  return role.tree->longest_edge(triangle) > kCell * role.solid->reach();
-}
-
-void SurfacePair::keep_cuts(Role& role, CrossedTriangle& triangle, const CutSegment& segment,
-                            std::span<const EdgeCrossing> crossings) {
+// Notes for the force that the other's triangle cuts this one along a segment.
+void SurfacePair::add_cut(std::size_t which, CrossedTriangle& triangle,
+                          const CrossedTriangle& other, CutSegment segment,
+                          std::span<const EdgeCrossing> crossings) {
+  if (!triangle.is_large)
+    return triangle.add_plane(other.normal, dot(other.normal, other.corner[0]),
+                              norm(segment.end - segment.start));
+  Role& role = roles_[which];
+  segment.other = roles_[1 - which].crossed_place[other.triangle];
   role.segments.emplace_back(segment, triangle.last_segment);
   triangle.last_segment = static_cast<std::uint32_t>(role.segments.size() - 1);
   for (const EdgeCrossing& at : crossings) {
@@ -148,6 +141,10 @@ void SurfacePair::keep_cuts(Role& role, CrossedTriangle& triangle, const CutSegm
     role.points.emplace_back(point, triangle.last_point);
     triangle.last_point = static_cast<std::uint32_t>(role.points.size() - 1);
   }
+}
+
+bool SurfacePair::is_large(const Role& role, std::uint32_t triangle) const {
+  return role.tree->longest_edge(triangle) > kCell * role.solid->reach();
 }
 
 CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,

@@ -73,8 +73,8 @@ class SurfacePair {
   void add_force(std::size_t role, std::uint32_t node);
   void add_force_of_triangle(std::size_t role, std::uint32_t triangle);
   bool is_large(const Role& role, std::uint32_t triangle) const;
-  void keep_cuts(Role& role, CrossedTriangle& triangle, const CutSegment& segment,
-                 std::span<const EdgeCrossing> crossings);
+  void add_cut(std::size_t role, CrossedTriangle& triangle, const CrossedTriangle& other,
+               CutSegment segment, std::span<const EdgeCrossing> crossings);
   void add_force_of_cells(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
   void add_force_of_cut(std::size_t role, const CrossedTriangle& triangle);

@@ -92,21 +92,21 @@ class SurfaceTree::Build {
     std::array<int, kBins> counts{};
     for (std::uint32_t i = r.begin; i < r.end; ++i) {
       const auto bin = static_cast<std::size_t>(bin_of(order_[i], centers, axis));
-      boxes[bin].add(bounds_[order_[i]].low), boxes[bin].add(bounds_[order_[i]].high);
+      boxes[bin].add_box(bounds_[order_[i]]);
       ++counts[bin];
     }
     std::array<double, kBins> above{};  // cost of the bins from here on
     Box box;
     int count = 0;
     for (std::size_t bin = kBins; bin-- > 1;) {
-      if (counts[bin] > 0) box.add(boxes[bin].low), box.add(boxes[bin].high);
+      box.add_box(boxes[bin]);
       count += counts[bin];
       above[bin] = count > 0 ? half_area(box) * count : HUGE_VAL;
     }
     Split best;
     box = {}, count = 0;
     for (std::size_t bin = 1; bin < kBins; ++bin) {
-      if (counts[bin - 1] > 0) box.add(boxes[bin - 1].low), box.add(boxes[bin - 1].high);
+      box.add_box(boxes[bin - 1]);
       count += counts[bin - 1];
       if (count == 0) continue;
       const double cost = half_area(box) * count + above[bin];

@@ -103,9 +103,8 @@ int run(int per_side) {
     report["threads " + std::to_string(threads)] =
         medians_of_five([&] { found = overlapping_pairs(parts); });
   }
-  std::vector<OverlappingPair> all;
   const std::clock_t start = std::clock();
-  all = by_a_loop(parts);
+  const std::vector<OverlappingPair> all = by_a_loop(parts);
   report["loop over all pairs"] = {
       {"processor_seconds", static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC}};
   report["pairs"] = found.size();

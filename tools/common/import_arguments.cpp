@@ -15,19 +15,11 @@
 #include "libvpm/import/intrinsics_file.h"
 #include "libvpm/recording/pose_reader.h"
 #include "tools/common/error_text.h"
+#include "tools/common/length_units.h"
 #include "tools/common/number_checks.h"
 
 namespace vpm::tools {
 namespace {
-
-constexpr std::array<std::pair<const char*, double>, 6> kUnitsPerMetre = {{
-    {"m", 1},
-    {"cm", 100},
-    {"mm", 1000},
-    {"um", 1e6},
-    {"in", 1 / 0.0254},
-    {"ft", 1 / 0.3048},
-}};
 
 // Returns the numbers of a list; empty if the text is none.
 std::vector<double> numbers_in(const std::string& text) {
@@ -61,7 +53,7 @@ void declare_values(CLI::App& app, ImportArguments& a) {
          "Units of the file per metre; if not given, 1000 for integers and 1 for floats and points")
       ->option_text("S");
   app.add_option("--unit", a.unit, "Unit of the file instead: m, cm, mm, um, in or ft")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "in", "ft"}));
+      ->check(CLI::IsMember(names_of_units()));
   app.add_option("--invalid", a.invalid,
                  "Values of the file that mean \"not measured\", such as 65535,4095, beside the "
                  "usual 0, 65535, 65504 and 1e10; "
@@ -111,8 +103,7 @@ std::optional<double> units_per_metre(const ImportArguments& a) {
     refuse_usage("--depth-scale and --unit exclude each other: leave one of them out");
   if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
     refuse_usage("--depth-scale must be finite and greater than 0");
-  for (const auto& [unit, per_metre] : kUnitsPerMetre)
-    if (a.unit == unit) return per_metre;
+  if (const std::optional<double> metres = metres_of_unit(a.unit)) return 1 / *metres;
   return a.depth_scale;
 }
 

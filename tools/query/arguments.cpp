@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "libvpm/view/sphere_files.h"
+#include "tools/common/length_units.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
-#include "tools/query/pairs_assembly.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {

@@ -9,6 +9,7 @@
 
 #include "libvpm/file/stream.h"
 #include "tools/common/error_text.h"
+#include "tools/common/length_units.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/common/repair_option.h"
 #include "tools/query/pairs_assembly.h"
@@ -57,7 +58,7 @@ class PairLines {
 
   void add(const OverlappingPair& pair) {
     const AssemblyPart &a = part(pair.first), &b = part(pair.second);
-    const double metres = metres_of_unit(unit_), cube = metres * metres * metres;
+    const double metres = metres_of_unit(unit_).value(), cube = metres * metres * metres;
     const double volume = pair.overlap.volume / cube;
     const double smaller = std::min(solid(pair.first).volume(), solid(pair.second).volume()) / cube;
     const auto [x, y, z] = pair.overlap.centroid;
@@ -139,7 +140,7 @@ void run_pairs(Program& program, const Arguments& a) {
   if (!a.poses.empty()) place_parts(assembly, a.poses.front());
   note_deviation(program, assembly.path, assembly.largest_deviation);
   const std::string unit = unit_of(a, assembly);
-  const double metres = metres_of_unit(unit);
+  const double metres = metres_of_unit(unit).value();
   const PreparedParts prepared =
       prepare_parts(program, assembly, metres, solid_options_of(a, assembly, metres));
   const std::vector<OverlappingPair> found = overlapping_pairs(prepared.parts);

@@ -6,10 +6,11 @@
 
 namespace vpm::tools {
 
-// Measures all pairs of parts, and writes a line for each that shares volume. Ends the program with
-// 10 if --fail-above is given and a pair shares more than that, or than it is allowed. Parts that
-// are refused hide no pairs of others; unless there is such a pair, Error(refused) is thrown then,
-// once all is written.
+// Measures all pairs of an assembly's parts, and writes a line for each pair that shares volume.
+// With
+// --fail-above the program's exit status is 10 if a pair shares more than that, or more than the
+// description allows it. A part that is refused is left out, and all other pairs are measured:
+// Error(refused) is thrown when all is written, unless the exit status is 10.
 void run_pairs(Program& program, const Arguments& arguments);
 
 }  // namespace vpm::tools

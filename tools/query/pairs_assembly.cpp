@@ -1,7 +1,6 @@
 #include "tools/query/pairs_assembly.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "libvpm/recording/pose_numbers.h"
 #include "libvpm/recording/pose_reader.h"
 #include "tools/common/error_text.h"
+#include "tools/common/length_units.h"
 #include "tools/common/nearest_word.h"
 #include "tools/query/mesh_tool.h"
 
@@ -26,9 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::array<std::pair<const char*, double>, 6> kUnits = {
-    {{"m", 1}, {"cm", .01}, {"mm", .001}, {"um", 1e-6}, {"in", .0254}, {"ft", .3048}}};
 
 // True if the name is the pattern, in which * stands for any letters.
 bool is_like(std::string_view name, std::string_view pattern) {
@@ -131,6 +128,14 @@ void check_names_once(const Assembly& assembly) {
   }
 }
 
+// Refuses a name that is no part's, with the one that may be meant.
+[[noreturn]] void refuse_part(const std::string& name, const std::vector<std::string>& names,
+                              const std::string& where) {
+  const std::string guess = guess_of_word(name, names);
+  refuse("there is no part '" + file::shown(name) + "'", where,
+         guess.empty() ? "the parts are " + file::listed(names) : guess);
+}
+
 // Throws Error(refused) for a rule that names no part.
 void check_rules(const Assembly& assembly) {
   const std::vector<std::string> names = names_of(assembly);
@@ -138,10 +143,7 @@ void check_rules(const Assembly& assembly) {
     for (const std::string& name : {assembly.allowed[k].first, assembly.allowed[k].second}) {
       if (std::ranges::any_of(names, [&](const auto& part) { return is_like(part, name); }))
         continue;
-      const std::string guess = guess_of_word(name, names);
-      refuse("there is no part '" + file::shown(name) + "'",
-             assembly.path + ", allowed pair " + std::to_string(k),
-             guess.empty() ? "the parts are " + file::listed(names) : guess);
+      refuse_part(name, names, assembly.path + ", allowed pair " + std::to_string(k));
     }
 }
 
@@ -158,7 +160,7 @@ Assembly described(const std::string& path) {
   Assembly assembly{.path = name, .unit = {}, .parts = {}, .allowed = {}};
   if (all.contains("unit")) {
     assembly.unit = text_at(all, "unit", name);
-    if (std::ranges::count(names_of_units(), assembly.unit) == 0)
+    if (!metres_of_unit(assembly.unit))
       refuse("\"unit\" is '" + file::shown(assembly.unit) + "'", name,
              "give m, cm, mm, um, in or ft");
   }
@@ -193,19 +195,6 @@ Assembly listed(const std::string& path) {
 }
 
 }  // namespace
-
-double metres_of_unit(const std::string& unit) {
-  return std::ranges::find(kUnits, unit, [](const auto& entry) { return entry.first; })->second;
-}
-
-const std::vector<std::string>& names_of_units() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> names;
-    for (const auto& [name, metres] : kUnits) names.emplace_back(name);
-    return names;
-  }();
-  return kNames;
-}
 
 bool AllowedPair::holds(const std::string& a, const std::string& b) const {
   return (is_like(a, first) && is_like(b, second)) || (is_like(b, first) && is_like(a, second));
@@ -243,10 +232,7 @@ void place_parts(Assembly& assembly, const std::string& poses) {
              "write {\"id\": \"" + names.front() + "\", \"pose\": […]}");
     const auto name = id.get<std::string>();
     const auto part = std::ranges::find(assembly.parts, name, &AssemblyPart::name);
-    const std::string guess = guess_of_word(name, names);
-    if (part == assembly.parts.end())
-      refuse("there is no part '" + file::shown(name) + "'", reader.place(),
-             guess.empty() ? "the parts are " + file::listed(names) : guess);
+    if (part == assembly.parts.end()) refuse_part(name, names, reader.place());
     if (!placed.insert(name).second)
       refuse("the part '" + file::shown(name) + "' has two poses", reader.place(),
              "leave one of them out");

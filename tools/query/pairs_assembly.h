@@ -47,9 +47,4 @@ Assembly read_assembly(const std::string& path);
 // the line, for what is no pose, and for an `id` that is missing, given twice, or of no part.
 void place_parts(Assembly& assembly, const std::string& poses);
 
-// Returns the metres of a unit, by its name: m, cm, mm, um, in or ft.
-double metres_of_unit(const std::string& unit);
-// Returns these names.
-const std::vector<std::string>& names_of_units();
-
 }  // namespace vpm::tools

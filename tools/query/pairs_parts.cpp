@@ -52,11 +52,13 @@ void for_each(std::vector<Source*>& sources, const std::function<void(Source&)>&
   });
 }
 
-// Finds what tells a source from others. Files of glTF may have their buffers beside them.
+// Sets `content`: the hash of the file's bytes, with the node. Text glTF may keep its buffers in
+// files beside it, so the bytes alone do not tell the solid, and the file's path counts too.
 void identify(Source& source) {
   source.content = file::content_hash({file::read_all(source.file)}) + source.node;
   if (source.file.ends_with(".gltf")) source.content += '\0' + source.file;
-  // The unit is that of the format.
+  // Nor do they where the format has a unit of its own, and the same bytes under another name have
+  // that of the assembly.
   if (has_unit(source.file)) source.content += '\0';
 }
 
