@@ -16,10 +16,13 @@
 namespace vpm {
 namespace {
 
-// Distance by which flush faces may sink into each other: the jitter of both surfaces and the small
-// motion between them, in units of the jitter, relative to the larger reach; and the rounding of
-// places, relative to their distance from the origin.
-constexpr double kMoves = 4, kRoundingOfPlaces = 0x1p-50;
+// Returns how far faces that are flush may come to lie inside each other, m: both surfaces are
+// moved by the jitter, and one by a small motion if the boundary does not close at once (four
+// jitters in all), and places far from the origin are rounded.
+double depth_of_touch(double reach, double distance_from_origin) {
+  constexpr double kMoves = 4, kRounding = 0x1p-50;
+  return kMoves * SolidSurface::kJitter * reach + kRounding * (distance_from_origin + reach);
+}
 
 // A part where it stands.
 struct PlacedPart {
@@ -54,8 +57,7 @@ PlacedPart placed(const SolidSurface& surface, const Pose& pose) {
   const Vec3 center = pose * surface.center_of_mass();
   PlacedPart result{&surface, 0, std::max(norm(center), norm(surface.center_of_mass())), {}};
   for (const Vec3& v : surface.tree().vertices()) result.box.add(pose.rotation * v + center);
-  const double room = kMoves * SolidSurface::kJitter * surface.reach() +
-                      kRoundingOfPlaces * (result.far + surface.reach());
+  const double room = depth_of_touch(surface.reach(), result.far);
   result.box.low = result.box.low - Vec3{room, room, room};
   result.box.high = result.box.high + Vec3{room, room, room};
   return result;
@@ -80,23 +82,22 @@ std::vector<PlacedPart> placed(std::span<const Part> parts) {
 // Returns the volume that two parts may seem to share though they only touch, m^3.
 double volume_of_touch(const PlacedPart& a, const PlacedPart& b) {
   const double reach = std::max(a.surface->reach(), b.surface->reach());
-  const double sunk =
-      kMoves * SolidSurface::kJitter * reach + kRoundingOfPlaces * (std::max(a.far, b.far) + reach);
-  return sunk * std::min(a.area, b.area);
+  return depth_of_touch(reach, std::max(a.far, b.far)) * std::min(a.area, b.area);
 }
 
 // Throws as a query does of the options, and of a part that was made without what forces need.
 void check(std::span<const Part> parts, const OverlapOptions& options) {
+  if (parts.empty()) return;
   const auto has_depth = [](const Part& part) {
     return HandleAccess::shared(part.solid)->has_depth();
   };
   const auto bare = std::ranges::find_if_not(parts, has_depth);
-  if (parts.empty()) return;
   const SolidBody& asked = (bare == parts.end() ? parts.front() : *bare).solid;
   OverlapQuery(asked, asked, options);
 }
 
-// Returns the pair with its overlap or refusal; none where the two only touch.
+// Returns the pair with what its parts share, or with the reason why that cannot be told; nothing
+// if the parts share no more than `volume_of_touch`, m^3, so that they may only touch.
 std::optional<OverlappingPair> measured(std::span<const Part> parts, const BoxPair& at,
                                         double volume_of_touch, const OverlapOptions& options) {
   const Part &a = parts[at.first], &b = parts[at.second];

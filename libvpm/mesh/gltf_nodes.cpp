@@ -54,8 +54,7 @@ Reached reached_nodes(const json& content) {
   return reached;
 }
 
-}  // namespace
-
+// Returns the indices of the nodes that are no other's children.
 json roots_of(const json& content) {
   const json& nodes = member(content, "nodes");
   std::set<std::uint64_t> children;
@@ -66,6 +65,16 @@ json roots_of(const json& content) {
   for (std::uint64_t k = 0; nodes.is_array() && k < nodes.size(); ++k)
     if (!children.contains(k)) roots.push_back(k);
   return roots;
+}
+
+}  // namespace
+
+bool give_scene(json& content) {
+  const json roots = roots_of(content);
+  if (!member(content, "scenes").empty() || roots.empty()) return false;
+  content["scene"] = 0;
+  content["scenes"] = json::array({{{"nodes", roots}}});
+  return true;
 }
 
 bool name_nodes(json& content) {

@@ -1,4 +1,4 @@
-// Nodes of a glTF file: their names, and which of them are shown.
+// Nodes of a glTF file: their scene, their names, and which of them are shown.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,9 @@
 
 namespace vpm {
 
-// Returns the indices of the nodes that are no other's children.
-nlohmann::json roots_of(const nlohmann::json& content);
+// Lists all nodes in a scene where the file has none, since assimp reads only those of one; returns
+// false where it has one, or no nodes that one could show.
+bool give_scene(nlohmann::json& content);
 
 // Calls the nodes that have no name by their places in the file: `node 0` is the first. Returns
 // false if all have names.

@@ -171,16 +171,6 @@ std::string with_json(std::string_view gltf, const json& content) {
   return changed + text + std::string(gltf.substr(kHeader + before));
 }
 
-// Lists all nodes in a scene where the file has none, since assimp reads only those of one; returns
-// false where it has one, or no nodes that one could show.
-bool give_scene(json& content) {
-  const json roots = roots_of(content);
-  if (!member(content, "scenes").empty() || roots.empty()) return false;
-  content["scene"] = 0;
-  content["scenes"] = json::array({{{"nodes", roots}}});
-  return true;
-}
-
 }  // namespace
 
 std::string percent_decoded(std::string_view text) {
@@ -205,9 +195,9 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name, const st
   check_required(content, name);
   check_buffers(content, bytes.starts_with("glTF"), name);
   note_rest(bytes, header);
-  const bool has_scene = !give_scene(content);
-  if (!has_scene) header.notes.push_back("it has no scene, and so all of its nodes are read");
-  const bool has_names = !name_nodes(content);
+  const bool gets_scene = give_scene(content);
+  if (gets_scene) header.notes.push_back("it has no scene, and so all of its nodes are read");
+  const bool gets_names = name_nodes(content);
   const std::vector<std::string> hidden = hide_nodes(content, node, name);
   if (!hidden.empty())
     header.notes.push_back(std::to_string(hidden.size()) +
@@ -218,7 +208,7 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name, const st
     header.notes.push_back(
         "its morph targets have weights, which are not applied: check its shape");
   header.plain = as_plain_gltf(content, chunk_of(bytes), name, file::most_memory(bytes.size()));
-  if (!header.plain && !(has_scene && has_names && hidden.empty()))
+  if (!header.plain && (gets_scene || gets_names || !hidden.empty()))
     header.plain = with_json(bytes, content);
   return header;
 }

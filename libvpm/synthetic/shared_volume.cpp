@@ -74,7 +74,8 @@ class SharedColumns {
  public:
   explicit SharedColumns(double base) : base_(base) {}
 
-  // Returns the volume that two columns share above the base, with their signs.
+  // Returns the volume between the base and the lower of both tops, over the shadow that both
+  // throw; negative for a column of a triangle that faces up with one that faces down.
   double volume(const Column& s, const Column& t) {
     shadow_.assign(s.corner.begin(), s.corner.end());
     for (std::size_t k = 0; k < 3 && !shadow_.empty(); ++k) {
@@ -110,7 +111,8 @@ class ColumnGrid {
       for_squares(columns[k], [&](auto& list) { list.push_back(k); });
   }
 
-  // Calls take(k) once for each column whose shadow may meet that of `column`.
+  // Calls take(k) once for each column k of the grid in whose squares the shadow of `column` lies,
+  // too; all others share nothing with it.
   template <class Take>
   void near(const Column& column, const Take& take) {
     ++asked_;

@@ -85,7 +85,8 @@ TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
   EXPECT_EQ(untimed.time(1), 0.001);
 }
 
-// A path whose tool stays, beside a solid that moves by 4 m in 2 s, and one that stays.
+// Two poses, 2 s apart, in which the tool stays. The first of two solids moves by 4 m, the second
+// stays.
 constexpr const char* kWithSolids =
     "{\"time\": 1, \"tool\": [0, 0, 0, 0, 0, 0, 1],"
     " \"solids\": [[0, 0, 0, 0, 0, 0, 1], [7, 0, 0, 0, 0, 0, 1]]}\n"
