@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks a page against the tools.
 
-    page_test.py --bin DIR[:DIR...] PAGE [TOOL]
+    page_test.py --bin DIR[:DIR...] --example FOLDER PAGE [TOOL]
 
-The page's blocks marked ```sh are run by bash in a new folder that holds the files of make-example, and must succeed. A result that
+The page's blocks marked ```sh are run by bash in a new folder that holds the files of FOLDER, made by make-example, and must succeed. A result that
 the page shows ('{"pose": ...}', "…" stands for any text) must be a line of the file results.jsonl that they leave. For the page of a
 TOOL, every long option of `TOOL --help-all` must stand in its section "Options" and the reverse, and it must have the sections of a
 man page in their order. `--help` must be a part of `--help-all`, of lines of at most 100 characters, with three examples that the tool
@@ -13,6 +13,7 @@ import argparse
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -42,10 +43,10 @@ def options_of_page(section):
     return {option for head in heads for option in re.findall(r"`(--[a-z][a-z-]*)", head)}
 
 
-def example_faults(page, environment):
+def example_faults(page, example, environment):
     """Yields what goes wrong when the page's examples are run."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["make-example", folder], env=environment, check=True)
+        shutil.copytree(example, folder, dirs_exist_ok=True)
         for block in re.findall(r"^```sh\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL):
             done = subprocess.run(["bash", "-eo", "pipefail", "-c", block], cwd=folder, env=environment,
                                   stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LONGEST_SECONDS)
@@ -99,12 +100,13 @@ def help_faults(tool, page, environment):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", required=True, help="folders of the tools")
+    parser.add_argument("--example", required=True, type=pathlib.Path, help="the files of make-example")
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("tool", nargs="?")
     options = parser.parse_args()
     environment = dict(os.environ, LC_ALL="C", PATH=options.bin + ":" + os.environ["PATH"])
     page = options.page.read_text()
-    found = list(example_faults(page, environment))
+    found = list(example_faults(page, options.example, environment))
     if options.tool:
         found += option_faults(options.tool, page, environment)
         found += help_faults(options.tool, page, environment)

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Opens the pages that the tools write with --view in headless Chromium: what they show is what the results say.
 
-usage: pages_test.py BIN     exit code 77: skipped, no Chromium or no drawing library
+usage: pages_test.py BIN EXAMPLE     EXAMPLE: what make-example wrote; exit code 77: skipped, no Chromium or no drawing library
 """
 import io
 import json
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -19,7 +20,7 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import headless_page  # noqa: E402
 
-BIN, FOLDER, BROWSER = pathlib.Path(), pathlib.Path(), None
+BIN, EXAMPLE, FOLDER, BROWSER = pathlib.Path(), pathlib.Path(), pathlib.Path(), None
 NAME = "<script>alert(1)</script>.vpmg"  # of a file, as a page must show it
 OPEN_MESH = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n"
 INTRINSICS = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
@@ -97,7 +98,7 @@ def write_points(name, count):
 
 
 def make_demo():
-    run("make-example", FOLDER)
+    shutil.copytree(EXAMPLE, FOLDER, dirs_exist_ok=True)
     run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 300, "--report", "pack.json", "--export",
         "tool.csv", "--view", "pack.html")
     run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", 50, "--report", "graph.json", "--view", "graph.html")
@@ -388,8 +389,8 @@ class OtherTools(PageTest):
 
 
 def main():
-    global BIN, FOLDER, BROWSER
-    BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+    global BIN, EXAMPLE, FOLDER, BROWSER
+    BIN, EXAMPLE = (pathlib.Path(sys.argv.pop(1)).resolve() for _ in range(2))
     with tempfile.TemporaryDirectory() as folder:
         FOLDER = pathlib.Path(folder)
         (FOLDER / "cube.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
