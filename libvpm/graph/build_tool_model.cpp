@@ -131,8 +131,7 @@ void fill_graph(const SphereBvh& bvh, const Frame& frame, Level& level) {
 
 VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& level) {
   const double pieces = std::clamp(kPiecesPerSphere * level.sphere_count, kMinPieces, kMaxPieces);
-  const VoronoiCells cells =
-      find_voronoi_cells(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
+  VoronoiCells cells = find_voronoi_cells(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
   for (std::size_t i = 0; i < level.sphere_count; ++i) {
     level.cell_volume.push_back(n.frame.cubed() * cells.volume[i]);
     level.cell_centroid.push_back(n.frame.from(cells.centroid[i]));

@@ -163,7 +163,8 @@ class GapCutter {
             std::vector<CellPiece>& pieces)
       : gap_(gap), scale_(scale), center_(center), limit_(kMomentRadius * size), pieces_(pieces) {}
 
-  // Halves the segments at their centroid along the axis of largest spread, until they fit.
+  // Halves the segments at their centroid along the axis of largest spread, until they fit; sorts
+  // them by piece.
   void cut(std::span<GapSegment> segments) {
     Vec3 spread;
     const CellPiece piece = measure(segments, spread);
@@ -174,10 +175,7 @@ class GapCutter {
     const int axis =
         spread.x >= spread.y && spread.x >= spread.z ? 0 : (spread.y >= spread.z ? 1 : 2);
     const double at = coordinate(piece.centroid + center_, axis);
-    const auto middle =
-        std::stable_partition(segments.begin(), segments.end(),
-                              [&](const GapSegment& s) { return coordinate(s.center, axis) < at; });
-    const std::size_t low = static_cast<std::size_t>(middle - segments.begin());
+    const std::size_t low = part(segments, axis, at);
     if (low == 0 || low == segments.size()) {  // all centres coincide
       pieces_.push_back(piece);
       return;
@@ -187,6 +185,22 @@ class GapCutter {
   }
 
  private:
+  // Moves the segments below `at` before the others, each in their order; returns their number.
+  // std::stable_partition takes memory anew each time, which takes as long as the rest.
+  std::size_t part(std::span<GapSegment> segments, int axis, double at) {
+    others_.clear();
+    std::size_t low = 0;
+    for (const GapSegment& s : segments) {
+      if (coordinate(s.center, axis) < at) {
+        segments[low++] = s;
+      } else {
+        others_.push_back(s);
+      }
+    }
+    std::copy(others_.begin(), others_.end(), segments.begin() + static_cast<std::ptrdiff_t>(low));
+    return low;
+  }
+
   // Returns the piece that the segments form; `spread` receives the second moments of their centres
   // along the axes.
   CellPiece measure(std::span<const GapSegment> segments, Vec3& spread) const {
@@ -215,17 +229,17 @@ class GapCutter {
   const Vec3 center_;
   const double limit_;
   std::vector<CellPiece>& pieces_;
+  std::vector<GapSegment> others_;
 };
 
 }  // namespace
 
-void cut_gap(const VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
+void cut_gap(VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces) {
   const std::uint32_t begin = cells.gap_begin[sphere], end = cells.gap_begin[sphere + 1];
   if (begin == end || !(cells.gap_scale > 0)) return;
-  std::vector<GapSegment> segments(cells.gap.segments.begin() + begin,
-                                   cells.gap.segments.begin() + end);
-  GapCutter(cells.gap, cells.gap_scale, center, size, pieces).cut(segments);
+  GapCutter(cells.gap, cells.gap_scale, center, size, pieces)
+      .cut(std::span(cells.gap.segments).subspan(begin, end - begin));
 }
 
 namespace {
@@ -302,8 +316,8 @@ CutCell cut_cell(std::vector<CellPiece> pieces, const Placement& placement) {
 
 }  // namespace
 
-CutCells cut_cells(std::span<const Sphere> spheres, const VoronoiCells& cells, double size,
-                   Vec3 origin, double unit, double volume) {
+CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, double size, Vec3 origin,
+                   double unit, double volume) {
   std::vector<CutCell> of_sphere(spheres.size());
   parallel_for(spheres.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

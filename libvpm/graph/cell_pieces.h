@@ -24,8 +24,9 @@ struct CellPiece {
 // are exact.
 void cut_ball(double radius, double size, std::vector<CellPiece>& pieces);
 
-// Appends pieces of the gap part of a cell, halved until the moment radius fits `size`.
-void cut_gap(const VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
+// Appends pieces of the gap part of a cell, halved until the moment radius fits `size`. Sorts the
+// cell's segments by piece.
+void cut_gap(VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces);
 
 struct CutCells {
@@ -34,9 +35,9 @@ struct CutCells {
   std::vector<CellSample> samples;
 };
 
-// Cuts all cells. Coordinates are stored relative to `origin`, times `unit`; weights relative to
-// `volume`.
-CutCells cut_cells(std::span<const Sphere> spheres, const VoronoiCells& cells, double size,
-                   Vec3 origin, double unit, double volume);
+// Cuts all cells, and sorts their segments by piece. Coordinates are stored relative to `origin`,
+// times `unit`; weights relative to `volume`.
+CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, double size, Vec3 origin,
+                   double unit, double volume);
 
 }  // namespace vpm

@@ -318,6 +318,9 @@ GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double s
     }
   });
   GapSegments gap{lattice.axis, lattice.dv, lattice.du, {}};
+  std::size_t count = 0;
+  for (const std::vector<GapSegment>& segments : of_row) count += segments.size();
+  gap.segments.reserve(count);
   for (std::vector<GapSegment>& segments : of_row) {
     gap.segments.insert(gap.segments.end(), segments.begin(), segments.end());
     segments = {};
