@@ -99,10 +99,16 @@ void add_tools(std::vector<ExtremeCase>& cases, const Device& device, bool quick
   });
 }
 
+// The tool of two by two by two spheres.
+const ToolModel& small_tool() {
+  static const ToolModel tool = build_tool_model(lattice_packing(2), {});
+  return tool;
+}
+
 void add_refused_models(std::vector<ExtremeCase>& cases) {
   const auto add = [&](const std::string& name, void (*spoil)(ToolModel&)) {
     cases.push_back({"sums", name, true, [=] {
-                       ToolModel tool = build_tool_model(lattice_packing(2), {});
+                       ToolModel tool = small_tool();
                        spoil(tool);
                        validate(tool, "tool");
                        return Deviation{};
@@ -128,7 +134,7 @@ void add_poses(std::vector<ExtremeCase>& cases, const Device& device) {
   const auto add = [&](const std::string& name, const std::function<Pose()>& make, bool refused) {
     cases.push_back(
         {"poses", name, refused, [=] {
-           const ToolModel tool = build_tool_model(lattice_packing(2), {});
+           const ToolModel& tool = small_tool();
            const double camera =
                ask(device, tool, see(*synthetic::make_wall({0, 0, 9}, {0, 0, -1}), small_camera()),
                    Measure::refined, make());
