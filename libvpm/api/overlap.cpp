@@ -1,6 +1,8 @@
 #include <vpm/solid.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
@@ -21,6 +23,36 @@ void check(const SolidSurface& a, const SolidSurface& b, const OverlapOptions& o
   if (options.with_force && !(a.has_depth() && b.has_depth()))
     invalid("a body was made without what forces need",
             "make both with `with_force`, or ask without");
+}
+
+// Returns a power of two by whose multiples quantities up to `most` are told, so that sums of
+// several are exact.
+double step_for(double most) {
+  constexpr int kBits = 49;
+  return std::ldexp(1.0, std::ilogb(most) - kBits);
+}
+
+double rounded(double value, double step) {
+  return std::nearbyint(value / step) * step + 0.0;  // -0 is 0
+}
+Vec3 rounded(Vec3 v, double step) {
+  return {rounded(v.x, step), rounded(v.y, step), rounded(v.z, step)};
+}
+
+// Gives the largest contact what rounding leaves of the whole, so that contacts add up to that in
+// any order. Drops those whose volume is below a bit of the whole's.
+void complete(std::vector<Contact>& contacts, const Overlap& whole) {
+  if (contacts.empty()) return;
+  const double bit = std::ldexp(1.0, std::ilogb(whole.volume) - 52);
+  for (Contact& contact : contacts) contact.volume = rounded(contact.volume, bit);
+  std::erase_if(contacts, [](const Contact& c) { return c.volume <= 0; });
+  Contact& largest = contacts.front();
+  largest.volume = whole.volume, largest.wrench = whole.wrench;
+  for (std::size_t k = 1; k < contacts.size(); ++k) {
+    largest.volume -= contacts[k].volume;
+    largest.wrench.force -= contacts[k].wrench.force;
+    largest.wrench.torque -= contacts[k].wrench.torque;
+  }
 }
 
 }  // namespace
@@ -44,12 +76,22 @@ std::size_t SolidBody::triangles() const {
 struct OverlapQuery::Impl {
   SolidPair pair;
   OverlapOptions options;
+  double force_step, torque_step;
+
+  Wrench wrench(Vec3 force, Vec3 torque) const {
+    return {rounded(options.stiffness * force, force_step),
+            rounded(options.stiffness * torque, torque_step)};
+  }
 };
 
 OverlapQuery::OverlapQuery(const SolidBody& a, const SolidBody& b, const OverlapOptions& options) {
   const auto &first = HandleAccess::shared(a), &second = HandleAccess::shared(b);
   check(*first, *second, options);
-  impl_ = std::make_unique<Impl>(Impl{SolidPair(first, second), options});
+  // A contact pushes by its volume at most.
+  const double most = options.stiffness * std::min(first->volume(), second->volume());
+  const double reach = std::min(first->reach(), second->reach());
+  impl_ = std::make_unique<Impl>(
+      Impl{SolidPair(first, second), options, step_for(most), step_for(most * reach)});
 }
 OverlapQuery::~OverlapQuery() = default;
 OverlapQuery::OverlapQuery(OverlapQuery&&) noexcept = default;
@@ -61,14 +103,21 @@ OverlapQuery::Impl& OverlapQuery::impl() const {
 
 Overlap OverlapQuery::run(const Pose& pose_a, const Pose& pose_b) {
   Impl& held = impl();
-  const auto& [with_force, stiffness] = held.options;
-  const SharedSolid shared = held.pair.measure(exact_pose(pose_a), exact_pose(pose_b), with_force);
-  return {shared.volume,
-          shared.centroid,
-          shared.area,
-          shared.turn,
-          {stiffness * shared.force, stiffness * shared.torque},
-          shared.closure};
+  const auto& [with_force, stiffness, contacts] = held.options;
+  const SharedSolid shared =
+      held.pair.measure(exact_pose(pose_a), exact_pose(pose_b), with_force, contacts);
+  Overlap overlap{shared.volume,
+                  shared.centroid,
+                  shared.area,
+                  shared.turn,
+                  held.wrench(shared.force, shared.torque),
+                  shared.closure,
+                  {}};
+  for (const SharedContact& c : shared.contacts)
+    overlap.contacts.push_back({0, c.volume, c.centroid, normalized_or_zero(c.area), norm(c.area),
+                                c.depth, held.wrench(c.force, c.torque), c.patches});
+  complete(overlap.contacts, overlap);
+  return overlap;
 }
 
 Overlap overlap(const SolidBody& a, const Pose& pose_a, const SolidBody& b, const Pose& pose_b,

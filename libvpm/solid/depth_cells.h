@@ -15,7 +15,8 @@ namespace vpm {
 // Segment of the boundary of the part inside, which lies to its left seen from outside.
 struct CutSegment {
   Vec3 start, end;
-  std::uint32_t other;  // number of the other's triangle in which it lies
+  std::uint32_t other;        // number of the other's triangle in which it lies
+  std::uint32_t segment = 0;  // number among all of the pair, for contacts
 };
 
 // Point where an edge of a triangle, from corner `edge` to the next, passes through the other's

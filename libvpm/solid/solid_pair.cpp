@@ -37,6 +37,15 @@ auto key_of(const Pose& p) {
   return std::tuple(t.x, t.y, t.z, x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z);
 }
 
+// Adds a contact to the sum of others, but for the depth.
+void add(SharedContact& sum, const SharedContact& contact) {
+  const double volume = sum.volume + contact.volume;
+  sum.centroid = (sum.volume * sum.centroid + contact.volume * contact.centroid) / volume;
+  sum.volume = volume;
+  sum.area += contact.area, sum.force += contact.force, sum.torque += contact.torque;
+  sum.patches += contact.patches;
+}
+
 Pose about_center(const Pose& pose, const SolidSurface& solid) {
   return {pose.rotation, pose * solid.center_of_mass()};
 }
@@ -64,11 +73,12 @@ double SolidPair::closure(const SurfacePairSums& sums) const {
 }
 
 // Sums with one jitter after the other until the boundary closes.
-SurfacePairSums SolidPair::sums(const Pose& relative, bool with_force, SharedSolid& shared) {
+SurfacePairSums SolidPair::sums(const Pose& relative, bool with_force, bool with_contacts,
+                                SharedSolid& shared) {
   double worst = 0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const SurfacePairSums found =
-        surfaces_.run(relative * small_motion(attempt, first_->reach()), with_force);
+        surfaces_.run(relative * small_motion(attempt, first_->reach()), with_force, with_contacts);
     ++shared.attempts;
     const double gap = closure(found);
     worst = std::max(worst, gap);
@@ -85,32 +95,78 @@ SurfacePairSums SolidPair::sums(const Pose& relative, bool with_force, SharedSol
   refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
 }
 
-SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with_force) {
+// Returns what the parts of the two surfaces enclose, in the first's frame, with the torque about
+// the centroid. 0 without volume.
+SharedSolid SolidPair::shared_of(const std::array<InnerSurface, 2>& inner) const {
+  SharedSolid shared;
+  const auto& [f, g] = inner;
+  const SurfaceMoments &m = f.moments, &n = g.moments;
+  shared.volume = std::max((m.flux() + n.flux()) / 3, 0.0);
+  if (shared.volume == 0) return shared;
+  shared.centroid = 0.25 / shared.volume * (m.first + n.first);
+  const double v = first_->volume(), w = second_->volume();
+  // Each solid's depth counts by the square of its volume: a half-space's alone, twins' by half.
+  const double of_second = w * w / (v * v + w * w), of_first = v * v / (v * v + w * w);
+  // Both parts say the same but for the closure: their mean is the same for either role.
+  shared.area = 0.5 * (m.area - n.area);
+  shared.turn = 0.5 * (m.turn() - n.turn()) - cross(shared.centroid, shared.area);
+  shared.force = of_second * f.force - of_first * g.force;
+  shared.torque = of_second * f.torque - of_first * g.torque - cross(shared.centroid, shared.force);
+  return shared;
+}
+
+// Returns the last contacts of the surfaces, in the first's frame, with torques about a point.
+std::vector<SharedContact> SolidPair::contacts(std::uint32_t count, Vec3 about) const {
+  std::vector<std::pair<SharedContact, const SurfaceContact*>> all;
+  for (const SurfaceContact& contact : surfaces_.contacts()) {
+    const SharedSolid s = shared_of(contact.inner);
+    if (s.volume == 0) continue;
+    const Vec3 torque = s.torque + cross(s.centroid - about, s.force);
+    all.push_back({{s.volume, s.centroid, s.area, s.force, torque, 0, 1}, &contact});
+  }
+  std::ranges::sort(all, {}, [](const auto& c) {
+    const auto& [x, y, z] = c.first.centroid;
+    return std::tuple(-c.first.volume, x, y, z);
+  });
+  std::vector<SharedContact> listed;
+  std::vector<const SurfaceContact*> deepest;  // of each in the list
+  for (const auto& [contact, sums] : all) {
+    if (listed.size() <= count) {
+      listed.push_back(contact), deepest.push_back(sums);
+    } else {
+      add(listed.back(), contact);
+      if (sums->deepest[0].depth > deepest.back()->deepest[0].depth) deepest.back() = sums;
+    }
+  }
+  for (std::size_t k = 0; k < listed.size(); ++k)
+    listed[k].depth = surfaces_.greatest_depth(*deepest[k]);
+  return listed;
+}
+
+SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with_force,
+                               std::uint32_t contact_count) {
   const auto [turned, first, second] = order(pose_a, pose_b);
   const Pose relative = relative_to(first, second);
   SharedSolid shared;
   const double apart = norm(relative.translation);
   if (apart > (1 + 1e-9) * (first_->reach() + second_->reach())) return shared;
-  const SurfacePairSums found = sums(relative, with_force, shared);
-  const SurfaceMoments &m = found.inner[0].moments, &n = found.inner[1].moments;
-  shared.volume = std::max((m.flux() + n.flux()) / 3, 0.0);
+  const SurfacePairSums found = sums(relative, with_force, contact_count > 0, shared);
+  const auto [volume, centroid, area, turn, force, torque, closure, attempts, none] =
+      shared_of(found.inner);
+  shared.volume = volume;
   if (shared.volume == 0) return shared;
-  const Vec3 centroid = 0.25 / shared.volume * (m.first + n.first);
-  const InnerSurface &f = found.inner[0], &g = found.inner[1];
-  const double v = first_->volume(), w = second_->volume();
-  // Each solid's depth counts by the square of its volume: a half-space's alone, twins' by half.
-  const double of_second = w * w / (v * v + w * w), of_first = v * v / (v * v + w * w);
-  const Vec3 force = of_second * f.force - of_first * g.force;
-  const Vec3 torque = of_second * f.torque - of_first * g.torque;
+  if (contact_count > 0) shared.contacts = contacts(contact_count, centroid);
   const double sign = turned ? -1 : 1;
   const Rotation& to_world = first.rotation;
-  // Both parts say the same but for the closure: their mean is the same for either role.
-  const Vec3 area = 0.5 * (m.area - n.area), turn = 0.5 * (m.turn() - n.turn());
-  shared.area = sign * (to_world * area);
-  shared.turn = sign * (to_world * (turn - cross(centroid, area)));
-  shared.force = sign * (to_world * force);
-  shared.torque = sign * (to_world * (torque - cross(centroid, force)));
+  const auto turn_to_world = [&](Vec3 v) { return sign * (to_world * v); };
+  shared.area = turn_to_world(area), shared.turn = turn_to_world(turn);
+  shared.force = turn_to_world(force), shared.torque = turn_to_world(torque);
   shared.centroid = first * centroid;
+  for (SharedContact& contact : shared.contacts) {
+    contact.area = turn_to_world(contact.area);
+    contact.force = turn_to_world(contact.force), contact.torque = turn_to_world(contact.torque);
+    contact.centroid = first * contact.centroid;
+  }
   return shared;
 }
 

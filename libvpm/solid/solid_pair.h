@@ -1,13 +1,24 @@
 // What two solids share at a pose: volume, its gradient, and the wrench that parts them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/surface_pair.h"
 
 namespace vpm {
+
+// A connected part of what two solids share, or several, as in SharedSolid; the torque is about the
+// centroid of all that is shared.
+struct SharedContact {
+  double volume = 0;
+  Vec3 centroid, area, force, torque;
+  double depth = 0;           // greatest, of one surface below the other, m; 0 without force
+  std::uint32_t patches = 1;  // that are summed
+};
 
 // All in world axes and the world's frame.
 struct SharedSolid {
@@ -24,6 +35,8 @@ struct SharedSolid {
   // |∫ x cross n dA| to the cube, of the smaller reach; the larger of both.
   double closure = 0;
   int attempts = 0;  // with different jitter
+  // Of which all is the sum, to rounding: largest first, and the rest in one; if asked.
+  std::vector<SharedContact> contacts;
 };
 
 // Pair of solids, prepared to be asked at many poses. Belongs to one thread.
@@ -35,8 +48,10 @@ class SolidPair {
   // Measures at poses that map the surfaces' meshes to the world; both must be rigid. a and b
   // swapped give the same bits, with signs of area, turn, force and torque turned, since a pair is
   // computed in one order. Leaves force and torque 0 without `with_force`, which needs surfaces
-  // with depth. Throws Error(refused) where no attempt closes.
-  SharedSolid measure(const Pose& pose_a, const Pose& pose_b, bool with_force = true);
+  // with depth. Lists `contacts` contacts, and the sum of all others; none are found for 0. Throws
+  // Error(refused) where no attempt closes.
+  SharedSolid measure(const Pose& pose_a, const Pose& pose_b, bool with_force = true,
+                      std::uint32_t contacts = 0);
 
   // Largest SharedSolid::closure that is given.
   static constexpr double kMaxClosure = 1e-8;
@@ -49,7 +64,10 @@ class SolidPair {
     Pose first, second;
   };
   Order order(const Pose& pose_a, const Pose& pose_b) const;
-  SurfacePairSums sums(const Pose& relative, bool with_force, SharedSolid& shared);
+  SurfacePairSums sums(const Pose& relative, bool with_force, bool with_contacts,
+                       SharedSolid& shared);
+  SharedSolid shared_of(const std::array<InnerSurface, 2>& inner) const;
+  std::vector<SharedContact> contacts(std::uint32_t count, Vec3 about) const;
   double closure(const SurfacePairSums& sums) const;
 
   std::shared_ptr<const SolidSurface> first_, second_;  // in the one order

@@ -71,6 +71,12 @@ inline SurfaceMoments moved(const SurfaceMoments& m, const Pose& pose) {
           r * (m.first + along) + (m.flux() + dot(t, area)) * t};
 }
 
+// Returns the moments of a surface that is `s` times as large.
+inline SurfaceMoments scaled(const SurfaceMoments& m, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  return {s2 * m.area, s3 * m.by_x, s3 * m.by_y, s3 * m.by_z, s3 * s * m.first};
+}
+
 // Second moments beside, for forces that are linear over a piece.
 struct ForceMoments {
   SurfaceMoments surface;

@@ -2,12 +2,9 @@
 
 #include <cmath>
 
-#include "libvpm/solid/linear_force.h"
-
 namespace vpm {
 namespace {
 
-constexpr std::uint32_t kLeaf = SurfaceTree::kLeaf, kNone = SurfaceTree::kNone;
 // Pieces of a surface over which the depth is taken for linear: their radius relative to the reach,
 // and half their slab's thickness relative to the depth.
 constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5;
@@ -16,11 +13,6 @@ constexpr double kCell = 0.12;
 // Planes that cross a triangle stand for the depth below them if their mean normal is so long;
 // where they disagree there is a crease.
 constexpr double kAgreeing2 = 0.97;
-
-SurfaceMoments scaled(const SurfaceMoments& m, double s) {
-  const double s2 = s * s, s3 = s2 * s;
-  return {s2 * m.area, s3 * m.by_x, s3 * m.by_y, s3 * m.by_z, s3 * s * m.first};
-}
 
 // Returns a power of two that is larger than any coordinate where the solids can meet.
 double unit_for(double reach, double other_reach) {
@@ -46,36 +38,41 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
   }
 }
 
-SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force) {
-  start(pose, with_force);
+SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_contacts) {
+  start(pose, with_force, with_contacts);
   const SurfaceTree &first = *roles_[0].tree, &second = *roles_[1].tree;
   if (children_that_meet(first.nodes()[0], second.bounds(0, 0), FloatPose(pose)) == 0) return sums_;
   walk_.run(first, second, pose, [&](std::uint32_t s, std::uint32_t t) { meet(s, t); });
+  for (std::size_t role = 0; role < 2; ++role) mark_crossed(role);
+  if (with_contacts_) join_crossed();
   for (std::size_t role = 0; role < 2; ++role) {
-    mark_crossed(role);
     add_crossed(role);
     add_whole(role);
-    sums_.inner[role] = result(roles_[role]);
+    sums_.inner[role] = result(roles_[role], roles_[role].sums);
   }
+  if (with_contacts_) find_contacts();
   return sums_;
 }
 
-void SurfacePair::start(const Pose& pose, bool with_force) {
+void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   if (++stamp_ == 0) {  // wrapped: forget all stamps
     for (Role& role : roles_)
       for (auto* stamps : {&role.crossed_stamp, &role.node_stamp, &role.corner_stamp})
         stamps->assign(stamps->size(), 0);
     stamp_ = 1;
   }
-  with_force_ = with_force;
+  with_force_ = with_force, with_contacts_ = with_contacts;
+  contacts_.clear(), whole_pieces_.clear(), force_pieces_.clear();
+  if (with_contacts && !parts_)
+    parts_ = std::make_unique<ContactParts>(*roles_[0].tree, *roles_[1].tree);
+  if (with_contacts) parts_->start();
   sums_ = {};
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
   for (Role& role : roles_) {
     role.placed_last = kNone;
     role.crossed.clear(), role.segments.clear(), role.points.clear();
-    role.cut = role.whole = {};
-    role.cut_wrench = role.whole_wrench = {};
+    role.sums = {};
   }
 }
 
@@ -118,10 +115,15 @@ void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triang
     const EdgeCrossing& at = crossing.of_second[static_cast<std::size_t>(k)];
     of_b.add_edge_crossing(at, per_unit_ * at.place);
   }
+  if (with_contacts_)
+    parts_->add({roles_[0].crossed_place[first_triangle], roles_[1].crossed_place[second_triangle]},
+                crossing, per_unit_);
   if (!with_force_) return;
-  add_cut(0, of_a, of_b, {start, end, 0},
+  const std::uint32_t number =
+      with_contacts_ ? static_cast<std::uint32_t>(parts_->segments().size() - 1) : 0;
+  add_cut(0, of_a, of_b, {start, end, 0, number},
           std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
-  add_cut(1, of_b, of_a, {end, start, 0},
+  add_cut(1, of_b, of_a, {end, start, 0, number},
           std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
 }
 
@@ -193,16 +195,18 @@ void SurfacePair::mark_crossed(std::size_t which) {
 
 void SurfacePair::add_crossed(std::size_t which) {
   Role& role = roles_[which];
+  face_ = 0;
   for (CrossedTriangle& triangle : role.crossed) {
     if (is_inside(which, role.tree->triangles()[triangle.triangle][2]))
       triangle.add_corner_inside();
-    role.cut.add(flat_moments(triangle.normal, triangle.area.real(), triangle.mean.real(),
-                              triangle.products_real()));
-    if (!with_force_) continue;
-    if (triangle.is_large)
+    role.sums.cut.add(flat_moments(triangle.normal, triangle.area.real(), triangle.mean.real(),
+                                   triangle.products_real()));
+    if (with_force_ && triangle.is_large)
       add_force_of_cells(which, triangle);
-    else
-      add_force_of_cut(which, triangle);
+    else if (with_force_)
+      if (const auto piece = add_force_of_cut(which, triangle); piece && with_contacts_)
+        note_force_of_face(which, triangle, *piece);
+    ++face_;
   }
 }
 
@@ -231,7 +235,8 @@ void SurfacePair::add_whole(std::size_t which) {
         continue;
       }
       if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
-      role.whole.add(scaled(summary.moments, per_unit_));
+      role.sums.whole.add(scaled(summary.moments, per_unit_));
+      if (with_contacts_) note_whole(which, child);
       if (with_force_) add_force(which, child);
     }
   }
@@ -248,19 +253,20 @@ void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) 
   for (const std::uint32_t v : corners) role.corner_stamp[v] = stamp_, role.is_inside[v] = inside;
   if (!inside) return;
   const auto [a, b, c] = role.tree->corners(triangle);
-  role.whole.add(scaled(triangle_moments(a, b, c), per_unit_));
+  role.sums.whole.add(scaled(triangle_moments(a, b, c), per_unit_));
+  if (with_contacts_) note_whole(which, triangle | kLeaf);
   if (with_force_) add_force_of_triangle(which, triangle);
 }
 
-InnerSurface SurfacePair::result(const Role& role) const {
-  SurfaceMoments moments = moved(scaled(role.whole.real(), unit_), role.to_first);
-  moments.add(scaled(role.cut.real(), unit_));
+InnerSurface SurfacePair::result(const Role& role, const RoleSums& sums) const {
+  SurfaceMoments moments = moved(scaled(sums.whole.real(), unit_), role.to_first);
+  moments.add(scaled(sums.cut.real(), unit_));
   const double unit3 = unit_ * unit_ * unit_, unit4 = unit3 * unit_;
-  const Vec3 force = role.to_first.rotation * (unit3 * role.whole_wrench.force.real());
-  const Vec3 torque = role.to_first.rotation * (unit4 * role.whole_wrench.torque.real()) +
+  const Vec3 force = role.to_first.rotation * (unit3 * sums.whole_wrench.force.real());
+  const Vec3 torque = role.to_first.rotation * (unit4 * sums.whole_wrench.torque.real()) +
                       cross(role.to_first.translation, force);
-  return {moments, force + unit3 * role.cut_wrench.force.real(),
-          torque + unit4 * role.cut_wrench.torque.real()};
+  return {moments, force + unit3 * sums.cut_wrench.force.real(),
+          torque + unit4 * sums.cut_wrench.torque.real()};
 }
 
 // Adds the force on the part of a surface below the node `top`, all of which is inside the other
@@ -293,8 +299,11 @@ void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
     }
     depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
     const ForceAndTorque f = linear_force(patch.moments, depth, patch.middle);
-    role.whole_wrench.force.add(unit3 * f.force);
-    role.whole_wrench.torque.add(unit4 * f.torque);
+    const ForceAndTorque added{unit3 * f.force, unit4 * f.torque};
+    role.sums.whole_wrench.add(added.force, added.torque);
+    const SurfaceTree::Summary& below = role.tree->summaries()[k];
+    if (with_contacts_)
+      note_force_of_whole(which, added, depth, patch.middle, below.first, below.end);
   }
 }
 
@@ -306,6 +315,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
     DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
     for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
     const Vec3 normal = normalized_or_zero(at.normal);
+    face_ = kNone;
     cells_.run(cell, normal, kCell * role.solid->reach() * per_unit_,
                [&](const DepthCell& part) { add_force_of_cell(which, part, normal); });
     return;
@@ -316,8 +326,9 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
   const ForceAndTorque f = linear_force(triangle_force_moments(a, b, c), depth, middle);
   const double unit3 = per_unit_ * per_unit_ * per_unit_;
-  role.whole_wrench.force.add(unit3 * f.force);
-  role.whole_wrench.torque.add(unit3 * per_unit_ * f.torque);
+  const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
+  role.sums.whole_wrench.add(added.force, added.torque);
+  if (with_contacts_) note_force_of_whole(which, added, depth, middle, triangle, triangle + 1);
 }
 
 // Adds the force on the part of a large crossed triangle, cell by cell.
@@ -340,12 +351,14 @@ void SurfacePair::add_force_of_cell(std::size_t which, const DepthCell& cell, Ve
   const auto& [a, b, c] = cell.corner;
   if (cell.is_whole()) {
     const Vec3 place = (a + b + c) / 3;
-    add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, place), place);
+    const LinearPiece piece =
+        add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, place), place);
+    if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
     return;
   }
   CrossedTriangle part;
   part.corner = cell.corner, part.normal = normal;
-  for (const auto& [start, end, number] : cell.segments) {
+  for (const auto& [start, end, number, segment] : cell.segments) {
     part.add_segment(start, end);
     const CrossedTriangle& other = roles_[1 - which].crossed[number];
     part.add_plane(other.normal, dot(other.normal, other.corner[0]), norm(end - start));
@@ -353,7 +366,8 @@ void SurfacePair::add_force_of_cell(std::size_t which, const DepthCell& cell, Ve
   for (const CutPoint& point : cell.points)
     if (point.edge == 1) part.add_far_point(point.sign, point.place);
   if (cell.is_inside[2] != 0) part.add_corner_inside();
-  add_force_of_cut(which, part);
+  if (const auto piece = add_force_of_cut(which, part); piece && with_contacts_)
+    note_force_of_cell(which, cell, *piece, normal);
 }
 
 // Returns the depth below the other's surface at a place in the first's frame; in the unit.
@@ -366,18 +380,19 @@ Depth SurfacePair::depth_at(std::size_t which, Vec3 place) {
   return depth;
 }
 
-void SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments, const Depth& depth,
-                                Vec3 place) {
+SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments,
+                                                    const Depth& depth, Vec3 place) {
   const ForceAndTorque f = linear_force(moments, depth, place);
-  roles_[which].cut_wrench.force.add(f.force);
-  roles_[which].cut_wrench.torque.add(f.torque);
+  roles_[which].sums.cut_wrench.add(f.force, f.torque);
+  return {depth, place, f};
 }
 
 // Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
-// closest point where these disagree.
-void SurfacePair::add_force_of_cut(std::size_t which, const CrossedTriangle& triangle) {
+// closest point where these disagree. Returns nothing where nothing crosses it.
+std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
+    std::size_t which, const CrossedTriangle& triangle) {
   const double weight = triangle.weight.real(), area = triangle.area.real();
-  if (!(weight > 0)) return;
+  if (!(weight > 0)) return std::nullopt;
   const Vec3 normal = triangle.plane_normal.real() / weight;
   Vec3 place;
   Depth depth{triangle.plane_offset.real() / weight, -normal};
@@ -385,7 +400,7 @@ void SurfacePair::add_force_of_cut(std::size_t which, const CrossedTriangle& tri
     place = triangle.mean.real() / area;
     depth = depth_at(which, place);
   }
-  add_cut_force(which, triangle.moments(), depth, place);
+  return add_cut_force(which, triangle.moments(), depth, place);
 }
 
 }  // namespace vpm

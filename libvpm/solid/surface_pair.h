@@ -3,12 +3,17 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "libvpm/core/box.h"
+#include "libvpm/solid/contact_parts.h"
 #include "libvpm/solid/crossed_triangle.h"
 #include "libvpm/solid/depth_cells.h"
+#include "libvpm/solid/linear_force.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
 #include "libvpm/solid/wide_sum.h"
@@ -20,6 +25,22 @@ struct InnerSurface {
   SurfaceMoments moments;
   // ∫ -depth n dA and ∫ -depth x cross n dA, with the depth below the other's surface; in m^3, m^4.
   Vec3 force, torque;
+};
+
+// Place on the surface of `role`, in the first's frame, and how deep it is taken to be below the
+// other's surface, m.
+struct DeepPlace {
+  double depth = 0;
+  Vec3 place;
+  std::uint32_t role = 0;
+};
+
+// A connected part of the boundary of what both contain, in the first's frame.
+struct SurfaceContact {
+  std::array<InnerSurface, 2> inner;
+  // Where one surface may lie deepest below the other's: where that was sampled for the force, and
+  // where a corner lies deepest if depths are as linear as the force takes them for.
+  std::array<DeepPlace, 2> deepest;
 };
 
 struct SurfacePairSums {
@@ -37,9 +58,46 @@ class SurfacePair {
 
   // Sums at a pose, which maps the second's frame to the first's. Allocates nothing once its lists
   // have grown. The order of triangles changes no bit of the sums.
-  SurfacePairSums run(const Pose& pose, bool with_force);
+  SurfacePairSums run(const Pose& pose, bool with_force, bool with_contacts = false);
+
+  // Returns the parts of which the last sums are made, if these were asked `with_contacts`, in no
+  // particular order but always the same. They add up to the sums, to rounding.
+  std::span<const SurfaceContact> contacts() const { return contacts_; }
+
+  // Returns the depth below the other's surface where the contact lies deepest, m, at the last
+  // pose.
+  double greatest_depth(const SurfaceContact& contact) const;
 
  private:
+  static constexpr std::uint32_t kLeaf = SurfaceTree::kLeaf, kNone = SurfaceTree::kNone;
+
+  // Sums over crossed triangles in the first's frame, over others in the surface's own; in the
+  // unit.
+  struct RoleSums {
+    WideMoments cut, whole;
+    WideWrench cut_wrench, whole_wrench;
+    void subtract(const RoleSums& o);
+  };
+  // Part of a surface whose depth is taken for linear, and its force; in the first's frame and the
+  // unit, but for the place.
+  struct LinearPiece {
+    Depth depth;
+    Vec3 place;
+    ForceAndTorque force;
+  };
+  // What contacts are summed from: a node (or kLeaf | triangle) that lies inside as a whole,
+  struct WholePiece {
+    std::uint32_t role, child;
+    std::uint32_t element;  // of the parts
+  };
+  // and the force on a piece of a surface, as it was added to the sums.
+  struct ForcePiece {
+    std::uint32_t role;
+    bool is_cut, is_of_whole;
+    std::uint32_t source;  // number of a whole piece, or element of the parts
+    ForceAndTorque force;
+    std::array<DeepPlace, 2> deepest;  // as those of contacts
+  };
   // One of the two surfaces. Stamps are those of the last pose where they equal `stamp_`.
   struct Role {
     const SolidSurface* solid = nullptr;
@@ -55,12 +113,10 @@ class SurfacePair {
     std::vector<std::uint32_t> node_stamp;                    // nodes above a crossed triangle
     std::vector<std::uint32_t> corner_stamp;                  // vertices whose side is known
     std::vector<std::uint8_t> is_inside;                      // of vertices
-    // Sums over crossed triangles in the first's frame, over others in its own; in the unit.
-    WideMoments cut, whole;
-    WideWrench cut_wrench, whole_wrench;
+    RoleSums sums;
   };
 
-  void start(const Pose& pose, bool with_force);
+  void start(const Pose& pose, bool with_force, bool with_contacts);
   PlacedTriangle placed(const Role& role, std::uint32_t triangle) const;
   const PlacedTriangle& placed_again(Role& role, std::uint32_t triangle);
   void meet(std::uint32_t first_triangle, std::uint32_t second_triangle);
@@ -77,10 +133,33 @@ class SurfacePair {
                CutSegment segment, std::span<const EdgeCrossing> crossings);
   void add_force_of_cells(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
-  void add_force_of_cut(std::size_t role, const CrossedTriangle& triangle);
+  std::optional<LinearPiece> add_force_of_cut(std::size_t role, const CrossedTriangle& triangle);
   Depth depth_at(std::size_t role, Vec3 place);
-  void add_cut_force(std::size_t role, const ForceMoments& moments, const Depth& depth, Vec3 place);
-  InnerSurface result(const Role& role) const;
+  LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Depth& depth,
+                            Vec3 place);
+  InnerSurface result(const Role& role, const RoleSums& sums) const;
+
+  // Of contacts (surface_contacts.cpp).
+  void note_whole(std::size_t role, std::uint32_t child);
+  void note_force_of_whole(std::size_t role, const ForceAndTorque& force, const Depth& depth,
+                           Vec3 place, std::uint32_t begin, std::uint32_t end);
+  void note_force_of_face(std::size_t role, const CrossedTriangle& triangle,
+                          const LinearPiece& piece);
+  void note_force_of_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
+                          Vec3 normal);
+  void note_force_of_split_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
+                                Vec3 normal);
+  void note_cut_force(std::size_t role, std::uint32_t element, const LinearPiece& piece,
+                      std::span<const Vec3> corners, unsigned inside, Vec3 middle);
+  void join_crossed();
+  void find_contacts();
+  void number_contacts();
+  void sum_contacts();
+  void add_pieces(std::uint32_t largest);
+  void merge_contacts();
+  std::uint32_t around_hollow(std::uint32_t hollow);
+  Box box_of(std::uint32_t contact);
+  std::uint32_t contact_of(const ForcePiece& piece);
 
   std::array<Role, 2> roles_;
   TreeWalk walk_;
@@ -90,8 +169,15 @@ class SurfacePair {
   std::vector<CutPoint> cut_points_;
   std::uint32_t stamp_ = 0;
   double unit_, per_unit_;  // m, a power of two that no coordinate exceeds, and its inverse
-  bool with_force_ = false;
+  bool with_force_ = false, with_contacts_ = false;
   SurfacePairSums sums_;
+  std::unique_ptr<ContactParts> parts_;  // null until contacts are asked
+  std::vector<WholePiece> whole_pieces_;
+  std::vector<ForcePiece> force_pieces_;
+  std::uint32_t face_ = 0;  // place of the crossed triangle whose force is added; kNone: of a whole
+  std::vector<std::uint32_t> number_of_;  // contact, by the elements of the parts that stand for it
+  std::vector<std::array<RoleSums, 2>> contact_sums_;
+  std::vector<SurfaceContact> contacts_;
 };
 
 }  // namespace vpm

@@ -61,7 +61,7 @@ class SurfaceTree::Build {
     Node node{};
     node.child.fill(kNone);
     tree_.nodes_.push_back(node);
-    tree_.summaries_.push_back({parent, 0, false, {}});
+    tree_.summaries_.push_back({parent, 0, 0, false, {}});
     return static_cast<std::uint32_t>(tree_.nodes_.size() - 1);
   }
 
@@ -228,6 +228,7 @@ class SurfaceTree::Build {
     for (std::size_t k = tree_.nodes_.size(); k-- > 0;) {
       Summary& summary = tree_.summaries_[k];
       summary.first = ranges_[k].begin;
+      summary.end = ranges_[k].end;
       for (const std::uint32_t child : tree_.nodes_[k].child) {
         if (child == kNone) continue;
         if ((child & kLeaf) != 0) {

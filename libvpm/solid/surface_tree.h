@@ -34,7 +34,8 @@ class SurfaceTree {
   // What is known of all triangles below a node.
   struct Summary {
     std::uint32_t parent;  // node; 0's is itself
-    std::uint32_t first;   // triangle
+    std::uint32_t first;   // triangle; all below are those from here on, before `end`
+    std::uint32_t end;
     bool is_connected;  // all hang together by vertices: where none is crossed, all are on one side
     SurfaceMoments moments;
   };

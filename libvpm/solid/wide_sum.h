@@ -19,6 +19,8 @@ class WideSum {
     high_ += high;
     low_ += low;
   }
+  // Takes a sum of some of the terms away, exactly.
+  void subtract(const WideSum& o) { high_ -= o.high_, low_ -= o.low_; }
   double real() const { return high_ + low_; }
 
  private:
@@ -29,6 +31,7 @@ class WideSum {
 class WideVec3 {
  public:
   void add(Vec3 term) { x_.add(term.x), y_.add(term.y), z_.add(term.z); }
+  void subtract(const WideVec3& o) { x_.subtract(o.x_), y_.subtract(o.y_), z_.subtract(o.z_); }
   Vec3 real() const { return {x_.real(), y_.real(), z_.real()}; }
 
  private:
@@ -39,6 +42,10 @@ class WideMoments {
  public:
   void add(const SurfaceMoments& m) {
     area_.add(m.area), by_x_.add(m.by_x), by_y_.add(m.by_y), by_z_.add(m.by_z), first_.add(m.first);
+  }
+  void subtract(const WideMoments& o) {
+    area_.subtract(o.area_), first_.subtract(o.first_);
+    by_x_.subtract(o.by_x_), by_y_.subtract(o.by_y_), by_z_.subtract(o.by_z_);
   }
   SurfaceMoments real() const {
     return {area_.real(), by_x_.real(), by_y_.real(), by_z_.real(), first_.real()};
@@ -51,6 +58,9 @@ class WideMoments {
 // Force and torque about the origin.
 struct WideWrench {
   WideVec3 force, torque;
+
+  void add(Vec3 f, Vec3 t) { force.add(f), torque.add(t); }
+  void subtract(const WideWrench& o) { force.subtract(o.force), torque.subtract(o.torque); }
 };
 
 }  // namespace vpm

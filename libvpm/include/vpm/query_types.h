@@ -4,6 +4,7 @@
 #include <vpm/device.h>
 #include <vpm/pose.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -48,6 +49,33 @@ enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
 struct Wrench {
   Vec3 force, torque;
   friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
+};
+
+// A contact: a connected patch of what two bodies a and b share. Contacts come in order of their
+// volumes, largest first (then of the centroid's x, y and z); the last one is the sum of all that
+// were not asked for. What is asked of two solids gives the same contacts in the same bits, and a
+// and b swapped give them with the signs of normal and wrench turned. Along a path volume, centroid
+// and wrench of a contact are continuous as those of the whole are, but where contacts merge or
+// split; its place in the list may change, the nearest centroid is the same contact. The hollows of
+// a contact are part of it.
+struct Contact {
+  std::size_t body = 0;  // b's place in the scene's list; 0 where two solids are asked
+  double volume = 0;  // m^3; volumes of the list add up to that of the whole, in any order, in the
+                      // same bits
+  Vec3 centroid;      // of the volume, world's frame, m
+  // ∫ n dA over the part of a's surface inside b, world's axes, from a into b: its direction, and
+  // its length in m^2, the area of the cut surface as seen along the normal. 0 if it cancels.
+  Vec3 normal;
+  double area = 0;
+  // Greatest depth of a's surface below b's or of b's below a's, m: that at a corner of the meshes,
+  // chosen by how deep the pieces of surface lie by which forces are summed. 0 without forces.
+  double depth = 0;
+  // What the contact adds to force and torque of the whole, which it is about the same point as.
+  // They add up as the volumes do. 0 without forces.
+  Wrench wrench;
+  std::uint32_t patches = 1;  // that it sums; more than 1 only in the last
+
+  friend constexpr bool operator==(const Contact&, const Contact&) = default;
 };
 
 // What a camera knows of the tool, as fractions of its volume. With the part that is in the solid

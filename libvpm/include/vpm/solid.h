@@ -192,13 +192,19 @@ struct Overlap {
   // How far the boundary of the shared solid is from closed, relative to the smaller radius: |∫ n
   // dA| over its square, |∫ x cross n dA| over its cube, the larger. Below 1e-8 in all answers.
   double closure = 0;
+  // Contacts of which all this is the sum, about the same point, if the options ask for them;
+  // empty if the volume is 0.
+  std::vector<Contact> contacts;
 
-  friend constexpr bool operator==(const Overlap&, const Overlap&) = default;
+  friend bool operator==(const Overlap&, const Overlap&) = default;
 };
 
 struct OverlapOptions {
   bool with_force = true;  // false leaves the wrench 0 and takes less time
   double stiffness = 1;    // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  // Contacts that are listed each by itself; all others are summed in one more. 0: none are found,
+  // which takes less time.
+  std::uint32_t contacts = 0;
 };
 
 // Measures two solids at many poses. Shares the bodies, so nothing dangles. Belongs to one thread
