@@ -123,7 +123,8 @@ void ContactParts::add_crossing(std::uint32_t number, const ContactSegment::End&
   at.last = static_cast<std::uint32_t>(crossings_.size() - 1);
 }
 
-void ContactParts::join_along_edges() {
+void ContactParts::join_along_edges(std::array<std::span<const CrossedTriangle>, 2> faces) {
+  faces_ = faces;
   for (std::uint32_t k = 0; k < segments_.size(); ++k)
     for (const ContactSegment::End& end : segments_[k].ends)
       if (end.sign != 0) add_crossing(k, end);
@@ -135,6 +136,7 @@ void ContactParts::sort_crossings(const Edge& at) {
   sorted_.clear();
   for (std::uint32_t k = at.last; k != kNone; k = crossings_[k].next)
     sorted_.push_back(&crossings_[k]);
+  if (sorted_.size() == 2 && sorted_[0]->face == sorted_[1]->face) return;  // one, as most are
   std::ranges::sort(sorted_, {},
                     [](const Crossing* c) { return std::tuple(c->along, c->face, c->segment); });
 }
@@ -146,11 +148,12 @@ void ContactParts::join_along(Edge& at) {
   const std::uint32_t role = at.role;
   at.low_inside = !sorted_.front()->enters;
   at.high_inside = sorted_.back()->enters;
+  const bool is_one = sorted_.size() == 2 && sorted_[0]->face == sorted_[1]->face;
   const Crossing* before = nullptr;
   for (const Crossing* c : sorted_) {
     is_open_[role][c->segment] = 1;
     // A face on one side only: the surface has a slit here, by less than is resolved.
-    if (std::ranges::count(sorted_, c->face, &Crossing::face) < 2)
+    if (!is_one && std::ranges::count(sorted_, c->face, &Crossing::face) < 2)
       is_open_[1 - role][c->segment] = 1;
     if (before == nullptr) {
       if (at.low_inside) join(c->segment, vertex(role, at.low));

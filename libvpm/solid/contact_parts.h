@@ -48,16 +48,16 @@ class ContactParts {
   // Adds what two crossed triangles share, scaled by `per_unit`, as in their corners.
   void add(std::array<std::uint32_t, 2> face, const TriangleCrossing& crossing, double per_unit);
 
-  // Joins what the crossed triangles tell, after all segments are added. `is_inside(role, vertex)`
+  // Joins segments along the edges of the crossed triangles, after all segments are added.
+  void join_along_edges(std::array<std::span<const CrossedTriangle>, 2> faces);
+
+  // Joins what the corners and the holes of the crossed triangles tell. `is_inside(role, vertex)`
   // tells if a vertex is inside the other solid; it is asked once for each crossed triangle.
   template <class IsInside>
-  void join_crossed(std::array<std::span<const CrossedTriangle>, 2> faces,
-                    const IsInside& is_inside) {
-    faces_ = faces;
-    join_along_edges();
+  void join_across_faces(const IsInside& is_inside) {
     for (std::uint32_t role = 0; role < 2; ++role) {
-      corners_inside_[role].resize(faces[role].size());
-      for (std::uint32_t f = 0; f < faces[role].size(); ++f)
+      corners_inside_[role].resize(faces_[role].size());
+      for (std::uint32_t f = 0; f < faces_[role].size(); ++f)
         join_corners(role, f, is_inside(role, corners(role, f)[2]));
     }
     for (std::uint32_t role = 0; role < 2; ++role) join_holes(role);
@@ -115,7 +115,6 @@ class ContactParts {
   const Edge* edge(std::uint32_t role, std::uint32_t p, std::uint32_t q) const;
   void add_crossing(std::uint32_t segment, const ContactSegment::End& end);
   void grow();
-  void join_along_edges();
   void sort_crossings(const Edge& edge);
   void join_along(Edge& edge);
   void join_corners(std::uint32_t role, std::uint32_t face, bool far_inside);

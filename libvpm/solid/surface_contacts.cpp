@@ -64,21 +64,36 @@ double SurfacePair::greatest_depth(const SurfaceContact& contact) const {
   return most;
 }
 
+// Joins what is crossed. Where the segments form one part, and each surface is one, all is one
+// contact: a piece without segments would be a whole surface.
 void SurfacePair::join_crossed() {
-  parts_->join_crossed(
-      {roles_[0].crossed, roles_[1].crossed},
-      [this](std::uint32_t role, std::uint32_t vertex) { return is_inside(role, vertex); });
+  const bool are_one =
+      roles_[0].tree->summaries()[0].is_connected && roles_[1].tree->summaries()[0].is_connected;
+  parts_->join_along_edges({roles_[0].crossed, roles_[1].crossed});
+  is_one_contact_ = are_one && parts_->parts_of_segments() < 2;
+  if (!is_one_contact_ || with_force_)
+    parts_->join_across_faces(
+        [this](std::uint32_t role, std::uint32_t vertex) { return is_inside(role, vertex); });
+  is_one_contact_ = is_one_contact_ || (are_one && parts_->parts_of_segments() < 2);
+  if (is_one_contact_) contacts_.assign(1, {});
 }
 
 void SurfacePair::note_whole(std::size_t which, std::uint32_t child) {
-  whole_pieces_.push_back({static_cast<std::uint32_t>(which), child, kNone});
+  if (!is_one_contact_) whole_pieces_.push_back({static_cast<std::uint32_t>(which), child, kNone});
+}
+
+void SurfacePair::note_deep_places(const DeepPlace& sampled, const DeepPlace& linear) {
+  take_deeper(contacts_[0].deepest[0], sampled);
+  take_deeper(contacts_[0].deepest[1], linear);
 }
 
 // Notes the force on triangles that lie inside as a whole, from `begin` to before `end`, and the
-// deepest of their corners. `depth` is taken at a place in the surface's own frame.
+// deepest of their corners, which are within the radius of a place. `depth` is taken there, in the
+// surface's own frame.
 void SurfacePair::note_force_of_whole(std::size_t which, const ForceAndTorque& force,
-                                      const Depth& depth, Vec3 place, std::uint32_t begin,
-                                      std::uint32_t end) {
+                                      const Depth& depth, Vec3 place, double radius,
+                                      std::uint32_t begin, std::uint32_t end) {
+  if (is_one_contact_ && depth.value + radius < contacts_[0].deepest[0].depth) return;
   const SurfaceTree& tree = *roles_[which].tree;
   const Vec3 g = depth.gradient;
   double most = -std::numeric_limits<double>::infinity();
@@ -90,14 +105,11 @@ void SurfacePair::note_force_of_whole(std::size_t which, const ForceAndTorque& f
     }
   const auto role = static_cast<std::uint32_t>(which);
   const Pose& to_first = roles_[which].to_first;
-  force_pieces_.push_back(
-      {role,
-       false,
-       true,
-       static_cast<std::uint32_t>(whole_pieces_.size() - 1),
-       force,
-       {{{depth.value, to_first * place, role},
-         {depth.value + most - dot(g, place), to_first * tree.vertices()[deepest], role}}}});
+  const DeepPlace sampled{depth.value, to_first * place, role},
+      linear{depth.value + most - dot(g, place), to_first * tree.vertices()[deepest], role};
+  if (is_one_contact_) return note_deep_places(sampled, linear);
+  const auto source = static_cast<std::uint32_t>(whole_pieces_.size() - 1);
+  force_pieces_.push_back({role, false, true, source, force, {{sampled, linear}}});
 }
 
 // Notes the force on a piece of a crossed triangle, how deep the middle of what is inside of it is,
@@ -113,6 +125,7 @@ void SurfacePair::note_cut_force(std::size_t which, std::uint32_t element, const
   DeepPlace deepest = at_middle;
   for (std::size_t k = 0; k < corners.size(); ++k)
     if ((inside >> k & 1) != 0) take_deeper(deepest, deep_at(corners[k]));
+  if (is_one_contact_) return note_deep_places(at_middle, deepest);
   force_pieces_.push_back(
       {role, true, face_ == kNone, element, piece.force, {{at_middle, deepest}}});
 }
@@ -121,7 +134,7 @@ void SurfacePair::note_force_of_face(std::size_t which, const CrossedTriangle& t
                                      const LinearPiece& piece) {
   const auto role = static_cast<std::uint32_t>(which);
   const unsigned inside = parts_->corners_inside(role, face_);
-  const std::uint32_t only = parts_->part_of_face(role, face_);
+  const std::uint32_t only = is_one_contact_ ? 0 : parts_->part_of_face(role, face_);
   if (only != kNone)
     return note_cut_force(which, only, piece, triangle.corner, inside, middle_of(triangle));
   for (const std::uint32_t part : parts_->parts_of_face(role, face_)) {
@@ -139,7 +152,7 @@ void SurfacePair::note_force_of_cell(std::size_t which, const DepthCell& cell,
   if (!cell.segments.empty()) middle = 0.5 * (cell.segments[0].start + cell.segments[0].end);
   unsigned inside = cell.is_whole() ? 7 : 0;
   for (std::size_t k = 0; k < 3; ++k) inside |= cell.is_inside[k] != 0 ? 1u << k : 0;
-  if (face_ == kNone) {  // of a triangle that is inside as a whole
+  if (face_ == kNone || is_one_contact_) {  // of a triangle that is inside as a whole
     const auto last = static_cast<std::uint32_t>(whole_pieces_.size() - 1);
     return note_cut_force(which, last, piece, cell.corner, inside, middle);
   }
@@ -188,19 +201,16 @@ void SurfacePair::note_force_of_split_cell(std::size_t which, const DepthCell& c
   }
 }
 
-// Finds the contacts of the sums. Where the segments form one part, and each surface is one, all is
-// one contact: a piece without segments would be a whole surface.
 void SurfacePair::find_contacts() {
-  if (parts_->segments().empty() && whole_pieces_.empty()) return;
-  const auto is_one = [](const Role& role) { return role.tree->summaries()[0].is_connected; };
-  if (parts_->parts_of_segments() < 2 && is_one(roles_[0]) && is_one(roles_[1])) {
-    contacts_.assign(1, {sums_.inner, {}});
-  } else {
-    for (WholePiece& piece : whole_pieces_)
-      piece.element = parts_->join_whole(piece.role, piece.child);
-    number_contacts();
-    sum_contacts();
+  if (is_one_contact_) {
+    contacts_[0].inner = sums_.inner;
+    return;
   }
+  for (WholePiece& piece : whole_pieces_)
+    piece.element = parts_->join_whole(piece.role, piece.child);
+  number_contacts();
+  if (contacts_.empty()) return;
+  sum_contacts();
   for (const ForcePiece& piece : force_pieces_) {
     SurfaceContact& contact = contacts_[contact_of(piece)];
     for (std::size_t k = 0; k < 2; ++k) take_deeper(contact.deepest[k], piece.deepest[k]);
@@ -209,7 +219,6 @@ void SurfacePair::find_contacts() {
 }
 
 std::uint32_t SurfacePair::contact_of(const ForcePiece& piece) {
-  if (contacts_.size() == 1) return 0;
   const std::uint32_t element =
       piece.is_of_whole ? whole_pieces_[piece.source].element : piece.source;
   return number_of_[parts_->find(element)];

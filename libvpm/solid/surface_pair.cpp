@@ -303,7 +303,7 @@ void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
     role.sums.whole_wrench.add(added.force, added.torque);
     const SurfaceTree::Summary& below = role.tree->summaries()[k];
     if (with_contacts_)
-      note_force_of_whole(which, added, depth, patch.middle, below.first, below.end);
+      note_force_of_whole(which, added, depth, patch.middle, patch.radius, below.first, below.end);
   }
 }
 
@@ -328,7 +328,8 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   const double unit3 = per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
   role.sums.whole_wrench.add(added.force, added.torque);
-  if (with_contacts_) note_force_of_whole(which, added, depth, middle, triangle, triangle + 1);
+  if (with_contacts_)
+    note_force_of_whole(which, added, depth, middle, role.solid->reach(), triangle, triangle + 1);
 }
 
 // Adds the force on the part of a large crossed triangle, cell by cell.

@@ -142,7 +142,8 @@ class SurfacePair {
   // Of contacts (surface_contacts.cpp).
   void note_whole(std::size_t role, std::uint32_t child);
   void note_force_of_whole(std::size_t role, const ForceAndTorque& force, const Depth& depth,
-                           Vec3 place, std::uint32_t begin, std::uint32_t end);
+                           Vec3 place, double radius, std::uint32_t begin, std::uint32_t end);
+  void note_deep_places(const DeepPlace& sampled, const DeepPlace& linear);
   void note_force_of_face(std::size_t role, const CrossedTriangle& triangle,
                           const LinearPiece& piece);
   void note_force_of_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
@@ -170,6 +171,7 @@ class SurfacePair {
   std::uint32_t stamp_ = 0;
   double unit_, per_unit_;  // m, a power of two that no coordinate exceeds, and its inverse
   bool with_force_ = false, with_contacts_ = false;
+  bool is_one_contact_ = false;  // known before the sums, which then are its own
   SurfacePairSums sums_;
   std::unique_ptr<ContactParts> parts_;  // null until contacts are asked
   std::vector<WholePiece> whole_pieces_;
