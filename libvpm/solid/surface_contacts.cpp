@@ -113,21 +113,22 @@ void SurfacePair::note_force_of_whole(std::size_t which, const ForceAndTorque& f
 }
 
 // Notes the force on a piece of a crossed triangle, how deep the middle of what is inside of it is,
-// and the deepest of those of its corners that are inside.
+// and the deepest of those of its corners that are inside. Without corners it is a part of a piece,
+// whose middle was not sampled.
 void SurfacePair::note_cut_force(std::size_t which, std::uint32_t element, const LinearPiece& piece,
-                                 std::span<const Vec3> corners, unsigned inside, Vec3 middle) {
+                                 std::span<const Vec3> corners, unsigned inside) {
   const auto role = static_cast<std::uint32_t>(which);
   const auto deep_at = [&](Vec3 x) {
     const double depth = piece.depth.value + dot(piece.depth.gradient, x - piece.place);
     return DeepPlace{unit_ * depth, unit_ * x, role};
   };
-  const DeepPlace at_middle = deep_at(middle);
+  const DeepPlace at_middle = deep_at(piece.middle);
   DeepPlace deepest = at_middle;
   for (std::size_t k = 0; k < corners.size(); ++k)
     if ((inside >> k & 1) != 0) take_deeper(deepest, deep_at(corners[k]));
   if (is_one_contact_) return note_deep_places(at_middle, deepest);
-  force_pieces_.push_back(
-      {role, true, face_ == kNone, element, piece.force, {{at_middle, deepest}}});
+  const DeepPlace sampled = corners.empty() ? DeepPlace{} : at_middle;
+  force_pieces_.push_back({role, true, face_ == kNone, element, piece.force, {{sampled, deepest}}});
 }
 
 void SurfacePair::note_force_of_face(std::size_t which, const CrossedTriangle& triangle,
@@ -135,37 +136,34 @@ void SurfacePair::note_force_of_face(std::size_t which, const CrossedTriangle& t
   const auto role = static_cast<std::uint32_t>(which);
   const unsigned inside = parts_->corners_inside(role, face_);
   const std::uint32_t only = is_one_contact_ ? 0 : parts_->part_of_face(role, face_);
-  if (only != kNone)
-    return note_cut_force(which, only, piece, triangle.corner, inside, middle_of(triangle));
+  if (only != kNone) return note_cut_force(which, only, piece, triangle.corner, inside);
   for (const std::uint32_t part : parts_->parts_of_face(role, face_)) {
     const CrossedTriangle of_part = parts_->piece(role, face_, part);
     LinearPiece linear = piece;
     linear.force = linear_force(of_part.moments(), piece.depth, piece.place);
-    note_cut_force(which, part, linear, {}, 0, middle_of(of_part));
+    linear.middle = middle_of(of_part);
+    note_cut_force(which, part, linear, {}, 0);
   }
 }
 
 void SurfacePair::note_force_of_cell(std::size_t which, const DepthCell& cell,
                                      const LinearPiece& piece, Vec3 normal) {
-  // Cells are cut by few segments: what is inside of one lies about the middle of these.
-  Vec3 middle = (cell.corner[0] + cell.corner[1] + cell.corner[2]) / 3;
-  if (!cell.segments.empty()) middle = 0.5 * (cell.segments[0].start + cell.segments[0].end);
   unsigned inside = cell.is_whole() ? 7 : 0;
   for (std::size_t k = 0; k < 3; ++k) inside |= cell.is_inside[k] != 0 ? 1u << k : 0;
   if (face_ == kNone || is_one_contact_) {  // of a triangle that is inside as a whole
     const auto last = static_cast<std::uint32_t>(whole_pieces_.size() - 1);
-    return note_cut_force(which, last, piece, cell.corner, inside, middle);
+    return note_cut_force(which, last, piece, cell.corner, inside);
   }
   const auto role = static_cast<std::uint32_t>(which);
   std::uint32_t part = parts_->part_of_face(role, face_);
-  if (part == kNone && cell.segments.empty()) part = parts_->element_at(role, face_, middle);
+  if (part == kNone && cell.segments.empty()) part = parts_->element_at(role, face_, piece.middle);
   if (part == kNone) {
     part = parts_->find(cell.segments[0].segment);
     for (const CutSegment& s : cell.segments)
       if (parts_->find(s.segment) != part)
         return note_force_of_split_cell(which, cell, piece, normal);
   }
-  note_cut_force(which, part, piece, cell.corner, inside, middle);
+  note_cut_force(which, part, piece, cell.corner, inside);
 }
 
 // Notes the force on each part of a cell that holds pieces of several contacts.
@@ -197,7 +195,8 @@ void SurfacePair::note_force_of_split_cell(std::size_t which, const DepthCell& c
     if (at_corner == part) of_part.add_corner_inside();
     LinearPiece linear = piece;
     linear.force = linear_force(of_part.moments(), piece.depth, piece.place);
-    note_cut_force(which, part, linear, {}, 0, middle_of(of_part));
+    linear.middle = middle_of(of_part);
+    note_cut_force(which, part, linear, {}, 0);
   }
 }
 

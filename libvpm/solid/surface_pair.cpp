@@ -385,7 +385,7 @@ SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const For
                                                     const Depth& depth, Vec3 place) {
   const ForceAndTorque f = linear_force(moments, depth, place);
   roles_[which].sums.cut_wrench.add(f.force, f.torque);
-  return {depth, place, f};
+  return {depth, place, f, place};
 }
 
 // Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
@@ -401,7 +401,9 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
     place = triangle.mean.real() / area;
     depth = depth_at(which, place);
   }
-  return add_cut_force(which, triangle.moments(), depth, place);
+  LinearPiece piece = add_cut_force(which, triangle.moments(), depth, place);
+  piece.middle = area > 0 ? triangle.mean.real() / area : triangle.corner[0];
+  return piece;
 }
 
 }  // namespace vpm

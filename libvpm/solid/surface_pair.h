@@ -81,9 +81,10 @@ class SurfacePair {
   // Part of a surface whose depth is taken for linear, and its force; in the first's frame and the
   // unit, but for the place.
   struct LinearPiece {
-    Depth depth;
+    Depth depth;  // at the place
     Vec3 place;
     ForceAndTorque force;
+    Vec3 middle = {};  // of the piece; set for contacts
   };
   // What contacts are summed from: a node (or kLeaf | triangle) that lies inside as a whole,
   struct WholePiece {
@@ -151,7 +152,7 @@ class SurfacePair {
   void note_force_of_split_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
                                 Vec3 normal);
   void note_cut_force(std::size_t role, std::uint32_t element, const LinearPiece& piece,
-                      std::span<const Vec3> corners, unsigned inside, Vec3 middle);
+                      std::span<const Vec3> corners, unsigned inside);
   void join_crossed();
   void find_contacts();
   void number_contacts();

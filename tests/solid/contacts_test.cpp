@@ -86,6 +86,17 @@ TEST(Contacts, PegsInAPlateAreOneEach) {
   }
 }
 
+// Pins that are flat in a block by half a millimetre: all places of their ends are as deep.
+TEST(Contacts, ShallowPinsAreAsDeepAsTheyReach) {
+  Solid pins;
+  for (const auto& [x, side] : {std::pair(.016, .01), std::pair(.051, .02), std::pair(.0775, .005)})
+    append(pins, make_box(side, side, .04), {x, .015, .0395});
+  const Overlap whole = overlap_of(make_box(.2, .1, .04), pins, {});
+  expect_sums(whole);
+  ASSERT_EQ(whole.contacts.size(), 3u);
+  for (const Contact& c : whole.contacts) EXPECT_NEAR(c.depth, .0005, 1e-9);
+}
+
 // Tubes through a plate: the plate's face has a ring inside each, with a hole that only the ring
 // joins to it.
 TEST(Contacts, TubesThroughAPlateAreOneEach) {

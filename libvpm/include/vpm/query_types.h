@@ -57,8 +57,8 @@ struct Wrench {
 // and b swapped give them with the signs of normal and wrench turned. Along a path volume, centroid
 // and wrench of a contact are continuous as those of the whole are, but where contacts merge or
 // split; its place in the list may change, the nearest centroid is the same contact. The hollows of
-// a contact are part of it. Contacts are told of two solids (OverlapOptions in vpm/solid.h); queries
-// of scenes tell none yet.
+// a contact are part of it. Contacts are told of two solids (OverlapOptions in vpm/solid.h);
+// queries of scenes tell none yet.
 struct Contact {
   std::size_t body = 0;  // b's place in the scene's list; 0 where two solids are asked
   double volume = 0;  // m^3; volumes of the list add up to that of the whole, in any order, in the
