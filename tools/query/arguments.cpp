@@ -95,11 +95,13 @@ void declare_assembly(CLI::App& app, Arguments& a) {
                  "assembly (.json). All pairs of parts are measured, and those that share volume "
                  "are told")
       ->option_text("FOLDER");
-  app.add_option("--fail-above", a.fail_above,
-                 "Exit status 10 if a pair shares more than this volume, in the cube of --unit; 0: "
-                 "any volume. Pairs that the description allows have limits of their own")
-      ->check(number_in(0, 1e300))
-      ->option_text("VOLUME");
+  app.add_option("--contacts", a.contacts,
+                 "Each pair of --pairs also lists its contacts, connected patches of what is "
+                 "shared: the largest N, 16 if no number follows, and the rest in one")
+      ->expected(0, 1)
+      ->default_str("16")
+      ->check(whole_number_in(1, 1 << 20))
+      ->option_text("[N]");
   app.add_option("--unit", a.unit,
                  "Unit of the meshes, poses and results of --pairs: m, cm, mm, um, in or ft")
       ->check(CLI::IsMember(names_of_units()))
@@ -152,6 +154,13 @@ void declare_collisions(CLI::App& app, Arguments& a) {
                  "Part of the tool that may be unseen or out of view where --collides says no")
       ->check(number_in(0, 1))
       ->capture_default_str();
+  app.add_option(
+         "--fail-above", a.fail_above,
+         "Exit status 10 if at a pose, or of a pair, the volume is more than this, in m³ or "
+         "the cube of --unit; 0: any volume. Pairs that an assembly allows have limits of "
+         "their own")
+      ->check(number_in(0, 1e300))
+      ->option_text("VOLUME");
 }
 
 void declare_level(CLI::App& app, Arguments& a) {

@@ -31,7 +31,8 @@ struct Arguments {
   std::vector<std::string> tools;
   std::vector<std::string> solids;   // each FILE or FILE@POSE
   std::string pairs, unit, repair;   // of an assembly
-  std::optional<double> fail_above;  // in the cube of its unit
+  std::size_t contacts = 0;          // of each pair; 0: none are told
+  std::optional<double> fail_above;  // m^3; of an assembly in the cube of its unit
   std::string cloud, pose;
   std::vector<std::string> poses;  // one file, or one for each tool
   std::string measure = "refined", shadows = "near";

@@ -1,27 +1,39 @@
-// Answers --collides: a field for each line of results, and the exit code of all.
+// Answers --collides and --fail-above: a field for each line of results, and the exit code of all.
 #pragma once
 
 #include <vpm/query_types.h>
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace vpm::tools {
 
 class Collisions {
  public:
-  // Does nothing unless `is_asked`. `unseen_limit` is that of collides().
-  Collisions(bool is_asked, double unseen_limit)
-      : is_asked_(is_asked), unseen_limit_(unseen_limit) {}
+  // Tells collisions if they are asked, and volumes above `fail_above`, m^3, if that is given.
+  // `unseen_limit` is that of collides().
+  Collisions(bool is_asked, double unseen_limit, std::optional<double> fail_above)
+      : is_asked_(is_asked), unseen_limit_(unseen_limit), fail_above_(fail_above) {}
 
-  // Adds the field `collides` to the line of results of one pose.
+  // Adds the fields `collides` and `above`, if they are asked, to the line of results of one pose.
   void answer(const Result& result, nlohmann::ordered_json& line);
 
-  // Returns 10 if any line was a hit, else 11 if any was unknown, else 0; 0 if nobody asked.
+  // Returns a sentence for each line above the limit, and for all further ones after twenty.
+  std::vector<std::string> above() const;
+
+  // Returns 10 if any line was a hit or above the limit, else 11 if any was unknown, else 0; 0 if
+  // nobody asked.
   int exit_code() const;
 
  private:
   bool is_asked_;
   double unseen_limit_;
+  std::optional<double> fail_above_;
+  std::vector<std::string> above_;  // the first of them
+  std::size_t count_above_ = 0;
   bool any_hit_ = false, any_unknown_ = false;
 };
 

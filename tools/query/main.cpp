@@ -1,6 +1,8 @@
 // vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out; which parts
 // of an assembly share volume.
 
+#include <string>
+
 #include "tools/query/arguments.h"
 #include "tools/query/mode.h"
 #include "tools/query/pairs.h"
@@ -36,7 +38,9 @@ void run(Program& program, const Arguments& arguments) {
     case Mode::pairs:  // has no tool, hence no setup
       break;
   }
-  if (mode != Mode::server) program.end_with(setup.collisions.exit_code());
+  if (mode == Mode::server) return;
+  for (const std::string& text : setup.collisions.above()) program.note(text);
+  program.end_with(setup.collisions.exit_code());
 }
 
 }  // namespace
@@ -48,7 +52,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   declare(program.app(), arguments);
   program.show_exit_code(
-      10, "with --collides: at a pose there is a collision; with --fail-above: a pair above it");
+      10, "with --collides: at a pose there is a collision; with --fail-above: a volume above it");
   program.show_exit_code(11, "the same: at none there is one, but at some nobody can know");
   program.show_examples({
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",

@@ -59,13 +59,13 @@ extern "C" __attribute__((visibility("default"))) void vpm_use_threads(int threa
 }
 
 extern "C" __attribute__((visibility("default"))) bool vpm_read_solid(
-    const char* mesh, const SolidOptions* options, SayOfMesh say, void* listener,
+    const char* mesh, const SolidOptions* options, bool with_force, SayOfMesh say, void* listener,
     std::optional<SolidBody>* body, PackingFault* fault) {
   return is_done(
       [&] {
         const SolidMesh solid = SolidMesh::read(mesh, *options);
         tell(solid, say, listener);
-        body->emplace(solid, false);
+        body->emplace(solid, with_force);
       },
       fault);
 }

@@ -43,6 +43,7 @@ constexpr Row kTable[] = {
     {"--deadline-us", {yes, no, yes, yes, no, no, yes, no}},
     {"--coherent", {yes, no, yes, yes, no, no, yes, no}},
     {"--collides", {yes, yes, no, yes, yes, yes, yes, no}},
+    {"--fail-above", {yes, yes, no, yes, yes, yes, yes, yes}},
     {"--unseen", {yes, yes, no, yes, yes, yes, yes, no}},
     {"--spheres-out", {yes, yes, yes, yes, no, no, no, no}},
     {"--frames", {no, no, no, yes, no, yes, no, no}},
@@ -67,7 +68,7 @@ constexpr Row kTable[] = {
     {"--for-scene", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--stats", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--pairs", {no, no, no, no, no, no, no, yes}},
-    {"--fail-above", {no, no, no, no, no, no, no, yes}},
+    {"--contacts", {no, no, no, no, no, no, no, yes}},
     {"--unit", {no, no, no, no, no, no, no, yes}},
     {"--repair", {no, no, no, no, no, no, no, yes}},
 };
@@ -90,7 +91,9 @@ constexpr Pair kExclusive[] = {
     {"--resume", "--spheres-out"},
     {"--resume", "--view"},
     {"--resume", "--collides"},
+    {"--resume", "--fail-above"},
     {"--collides", "--coupling"},
+    {"--fail-above", "--coupling"},
 };
 
 struct Need {

@@ -1,6 +1,7 @@
 #include "tools/query/pairs.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,17 +21,12 @@ namespace vpm::tools {
 namespace {
 
 constexpr CsvColumn kPairs[] = {
-    {"part_a", "/parts/0"},
-    {"part_b", "/parts/1"},
-    {"volume", "/volume"},
-    {"volume_fraction", "/volume_fraction"},
-    {"centroid_x", "/centroid/0"},
-    {"centroid_y", "/centroid/1"},
-    {"centroid_z", "/centroid/2"},
-    {"closure", "/closure"},
-    {"allowed", "/allowed"},
-    {"above", "/above"},
-    {"unit", "/unit"},
+    {"part_a", "/parts/0"},        {"part_b", "/parts/1"},
+    {"volume", "/volume"},         {"volume_fraction", "/volume_fraction"},
+    {"centroid_x", "/centroid/0"}, {"centroid_y", "/centroid/1"},
+    {"centroid_z", "/centroid/2"}, {"closure", "/closure"},
+    {"contacts", "/contacts"},     {"allowed", "/allowed"},
+    {"above", "/above"},           {"unit", "/unit"},
 };
 
 // Returns the unit of the assembly: that of --unit, or that of its description; metres otherwise.
@@ -47,6 +43,22 @@ SolidOptions solid_options_of(const Arguments& a, const Assembly& assembly, doub
   if (!a.repair.empty() && !parse_repair(a.repair, options))
     refuse_usage("--repair " + a.repair + ": give holes, voxel, voxel=RES, flood or flood=RES");
   return options;
+}
+
+// Returns what a line tells of contacts, in a unit of so many metres. Volumes and areas are those
+// of the API divided once, so that they add up as closely as quotients can.
+nlohmann::ordered_json contacts_of(const Overlap& overlap, double metres) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Contact& c : overlap.contacts) {
+    const auto [x, y, z] = c.centroid;
+    list.push_back({{"volume", c.volume / (metres * metres * metres)},
+                    {"centroid", {x / metres, y / metres, z / metres}},
+                    {"normal", {c.normal.x, c.normal.y, c.normal.z}},
+                    {"area", c.area / (metres * metres)},
+                    {"depth", c.depth / metres},
+                    {"patches", c.patches}});
+  }
+  return list;
 }
 
 // An assembly whose pairs are told, in its unit.
@@ -68,6 +80,7 @@ class PairLines {
                                 {"centroid", {x / metres, y / metres, z / metres}},
                                 {"closure", pair.overlap.closure}};
     const AllowedPair* const rule = assembly_.rule_for(a, b);
+    if (arguments_.contacts > 0) line["contacts"] = contacts_of(pair.overlap, metres);
     if (rule != nullptr && rule->volume) line["allowed"] = *rule->volume;
     if (rule != nullptr && !rule->volume) line["allowed"] = "any";
     if (arguments_.fail_above) line["above"] = is_above(line, rule, smaller);
@@ -141,9 +154,11 @@ void run_pairs(Program& program, const Arguments& a) {
   note_deviation(program, assembly.path, assembly.largest_deviation);
   const std::string unit = unit_of(a, assembly);
   const double metres = metres_of_unit(unit).value();
-  const PreparedParts prepared =
-      prepare_parts(program, assembly, metres, solid_options_of(a, assembly, metres));
-  const std::vector<OverlappingPair> found = overlapping_pairs(prepared.parts);
+  const PreparedParts prepared = prepare_parts(
+      program, assembly, metres, solid_options_of(a, assembly, metres), a.contacts > 0);
+  const std::vector<OverlappingPair> found = overlapping_pairs(
+      prepared.parts,
+      {.with_force = a.contacts > 0, .contacts = static_cast<std::uint32_t>(a.contacts)});
   PairLines pairs(a, assembly, prepared, unit);
   for (const OverlappingPair& pair : found)
     if (pair.refusal.empty()) pairs.add(pair);

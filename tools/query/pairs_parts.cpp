@@ -67,7 +67,7 @@ void keep_what_is_said(void* source, bool is_warning, const char* text) {
 }
 
 // Reads the mesh as it is, or, where it is no solid, repaired: what is sound keeps its volume.
-void read_mesh(Source& source, SolidOptions options) {
+void read_mesh(Source& source, SolidOptions options, bool with_force) {
   static const auto read = reinterpret_cast<ReadSolid>(function_of_meshes(kReadSolid));
   if (options.scale && has_unit(source.file)) options.scale = 1;
   options.node = source.node;
@@ -75,7 +75,8 @@ void read_mesh(Source& source, SolidOptions options) {
   PackingFault fault;
   const auto is_read = [&] {
     fault = {};
-    return read(source.file.c_str(), &options, keep_what_is_said, &source, &source.body, &fault);
+    return read(source.file.c_str(), &options, with_force, keep_what_is_said, &source, &source.body,
+                &fault);
   };
   if (is_read()) return;
   if (repair != Repair::none) {
@@ -86,10 +87,10 @@ void read_mesh(Source& source, SolidOptions options) {
   throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
 }
 
-void prepare(Source& source, const SolidOptions& options) {
-  if (!file::is_container(source.file)) return read_mesh(source, options);
+void prepare(Source& source, const SolidOptions& options, bool with_force) {
+  if (!file::is_container(source.file)) return read_mesh(source, options, with_force);
   try {
-    source.body.emplace(Tool::read(source.file), false);
+    source.body.emplace(Tool::read(source.file), with_force);
   } catch (const Error& error) {
     const std::string& where = error.where();
     throw Error(error.kind(), error.problem(), where.empty() ? source.file : where, error.hint());
@@ -155,7 +156,7 @@ class Sources {
   }
 
   // Reads those that differ, and gives the others what they have in common.
-  void prepare_all(const SolidOptions& options) {
+  void prepare_all(const SolidOptions& options, bool with_force) {
     std::vector<Source*> files;
     for (const auto& source : all_) files.push_back(source.get());
     for_each(files, identify);
@@ -163,7 +164,7 @@ class Sources {
     for (Source* source : files)
       if (!source->fault && first.try_emplace(source->content, source).second)
         solids_.push_back(source);
-    for_each(solids_, [&](Source& source) { prepare(source, options); });
+    for_each(solids_, [&](Source& source) { prepare(source, options, with_force); });
     for (Source* source : files) {
       if (source->fault || source->body) continue;
       source->body = first[source->content]->body;
@@ -190,10 +191,10 @@ void load_reader(const Program& program, const Assembly& assembly) {
 }  // namespace
 
 PreparedParts prepare_parts(const Program& program, const Assembly& assembly, double metres,
-                            const SolidOptions& options) {
+                            const SolidOptions& options, bool with_force) {
   load_reader(program, assembly);
   Sources sources(assembly);
-  sources.prepare_all(options);
+  sources.prepare_all(options, with_force);
   tell(program, sources.solids(), metres);
   PreparedParts prepared;
   for (std::size_t k = 0; k < assembly.parts.size(); ++k) {

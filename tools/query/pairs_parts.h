@@ -20,8 +20,9 @@ struct PreparedParts {
 // read and prepared once. `metres` is the assembly's unit, in which meshes are whose format has no
 // unit; poses are too. `options` say how meshes are repaired, and whether the unit was told. Prints
 // an error for each part that is refused, which is then left out, and what is doubtful of the
-// others. Throws Error(unavailable) where meshes, or those of a format, cannot be read at all.
+// others. Forces are prepared if `with_force`. Throws Error(unavailable) where meshes, or those of
+// a format, cannot be read at all.
 PreparedParts prepare_parts(const Program& program, const Assembly& assembly, double metres,
-                            const SolidOptions& options);
+                            const SolidOptions& options, bool with_force);
 
 }  // namespace vpm::tools

@@ -81,7 +81,7 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
       tools(read_tools(p, a.tools)),
       solids(read_solids(p, a.solids)),
       points(denoising_of(a)),
-      collisions(a.collides, a.unseen_limit) {
+      collisions(a.collides, a.unseen_limit, a.fail_above) {
   if (!solids.empty()) check_surfaces(tools, a.tools);
   options = query_options(program, a);
   if (!a.view.empty()) view.emplace(a.view, tools, a.tools, options);

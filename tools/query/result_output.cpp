@@ -40,6 +40,7 @@ constexpr CsvColumn kResult[] = {
     {"level_reason", "/level_reason"},
     {"bodies", "/bodies"},
     {"collides", "/collides"},
+    {"above", "/above"},
 };
 
 constexpr CsvColumn kCoupling[] = {

@@ -20,7 +20,7 @@ $ vpm-query --pairs parts --repair voxel=24 | python3 near.py
 ['again.off', 'open.off', 0.00795797, 1.0, [0.0, 0.0, 0.0], None, None, 'm']
 ['cube.off', 'open.off', 0.00795797, 1.0, [0.0, 0.0, 0.0], None, None, 'm']
 2> vpm-query: note: 3 parts, 3 pairs share volume
-$ vpm-query --pairs parts --fail-above 0.007 --quiet -o found.csv || echo $?; cat found.csv | cut -d, -f1,2,10,11
+$ vpm-query --pairs parts --fail-above 0.007 --quiet -o found.csv || echo $?; cat found.csv | cut -d, -f1,2,11,12
 10
 part_a,part_b,above,unit
 again.off,cube.off,true,m
@@ -60,6 +60,19 @@ $ vpm-query --pairs - --fail-above 0 --quiet < fit.json | cmp - fit.jsonl
 [10]
 $ vpm-query --pairs fit.json --fail-above 0 --dump-config > call.json && $VALIDATE config.vpm-query call.json && vpm-query --config call.json --quiet | cmp - fit.jsonl
 [10]
+
+# Contacts: three pins in a block, in mm; the last sums what was not asked for.
+$ echo '{"unit": "mm", "parts": [{"mesh": "block.off"}, {"mesh": "pins.off"}]}' > comb.json; echo "import json; print(*([[round(v, 3) + 0 for v in (c['volume'], *c['centroid'], *c['normal'], c['area'], c['depth'])] + [c['patches']] for c in json.loads(open('comb.jsonl').readline())['contacts']]), sep='\n')" > contacts.py
+$ vpm-query --pairs comb.json --contacts --quiet -o comb.jsonl && python3 contacts.py && $VALIDATE pair-result comb.jsonl
+[200.0, 51.0, 20.0, 19.75, 0.0, 0.0, 1.0, 400.0, 0.5, 1]
+[50.0, 16.0, 15.0, 19.75, 0.0, 0.0, 1.0, 100.0, 0.5, 1]
+[12.5, 77.5, 12.5, 19.75, 0.0, 0.0, 1.0, 25.0, 0.5, 1]
+$ vpm-query --pairs comb.json --contacts 1 --quiet --force -o comb.jsonl && python3 contacts.py && $VALIDATE pair-result comb.jsonl
+[200.0, 51.0, 20.0, 19.75, 0.0, 0.0, 1.0, 400.0, 0.5, 1]
+[62.5, 28.3, 14.5, 19.75, 0.0, 0.0, 1.0, 125.0, 0.5, 2]
+$ vpm-query --pairs comb.json --contacts 0
+2> vpm-query: error: --contacts: 0 is not a whole number from 1 to 1048576 (see vpm-query --help)
+[2]
 
 # A model is in metres, whatever the unit of the others.
 $ vpm-pack cube.off -o cube.vpmp --spheres 10 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet && vpm-graph cube.vpmp -o bare.vpmg --no-surface --quiet
@@ -130,7 +143,7 @@ $ vpm-query --pairs fit.json --tool cube.vpmg --stiffness 5
 2> vpm-query: error: --tool and --stiffness do not go with pairs of an assembly, chosen by --pairs: leave them out
 [2]
 $ vpm-query --tool cube.vpmg --solid cube.off --pose 0,0,0,0,0,0,1 --fail-above 1 --unit mm
-2> vpm-query: error: --fail-above and --unit do not go with poses in a cloud, chosen because --frames is not given: leave them out
+2> vpm-query: error: --unit does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --pairs - --poses - < fit.json
 2> vpm-query: error: only one of --tool, --cloud, --pairs and --poses can be standard input
