@@ -8,9 +8,12 @@
 #include <cmath>
 #include <vector>
 
+#include "libvpm/backend/cell_clusters.h"
+#include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/tool_query.h"
+#include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
@@ -106,6 +109,26 @@ TEST(Visibility, LeavesNothingUnseenBeforeAWall) {
   }
 }
 
+// Returns what the camera does not see of a tool of which all is free: part by part.
+UnseenSum unseen_of(const ToolModel& tool, const DepthSurface& surface, const Pose& to_surface) {
+  const Level& level = tool.level(0);
+  const CellClusters cells = cluster_cells(tool, level);
+  const std::vector<BlockMass> blocks = block_masses(level);
+  UnseenSum sum;
+  const auto add = [&](const BlockMass& part) {
+    sum.add(part.weight, surface.sight_at(to_surface * part.centroid));
+  };
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    if (is_compact(level.cell_radius[i], tool.radius)) {
+      add(cells.masses[i]);
+    } else {
+      for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b)
+        add(blocks[b]);
+    }
+  }
+  return sum;
+}
+
 // Returns a noisy image with holes.
 Cloud rough(const char* scene) {
   auto [camera, image] = testing::small_noisy_image(scene);
@@ -141,6 +164,30 @@ TEST(Visibility, AddsUpToOneWithTheSameBitsForAnyThreads) {
     }
   }
   set_thread_count(0);
+}
+
+// Clusters, groups and larger parts that are told as one add the bits of their parts one by one.
+TEST(Visibility, OfFreeToolsIsThatOfTheirParts) {
+  const DepthBody clean(testing::wall_with_hole()), holey(rough("wall"));
+  bool any_unseen = false, any_out_of_view = false;
+  for (const DepthBody& body : {clean, holey}) {
+    const DepthSurface surface = body.surface();
+    for (const ToolModel& tool : {lattice_cube(0.1, 10, 2), lattice_cube(0.1, 5, 4)}) {
+      RefinedMeasure measure(tool, tool.level(0), {});
+      for (int k = 0; k < 200; ++k) {
+        SCOPED_TRACE(k);
+        const Pose pose{generic_rotation(), {0.006 * k - 0.6, 0.3 - 0.003 * k, 0.3 + 0.006 * (k % 80)}};
+        const BodySum found = measure.run(body, pose);
+        ASSERT_EQ(found.sum.volume.value, 0);
+        const Pose to_surface = pose_in_body(body.to_world(), pose, tool.center_of_mass);
+        EXPECT_EQ(found.unseen, unseen_of(tool, surface, to_surface));
+        any_unseen |= found.unseen->unseen.value > 0;
+        any_out_of_view |= found.unseen->out_of_view.value > 0;
+      }
+    }
+  }
+  EXPECT_TRUE(any_unseen);
+  EXPECT_TRUE(any_out_of_view);
 }
 
 TEST(Visibility, IsOfOneCamera) {

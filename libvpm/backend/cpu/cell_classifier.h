@@ -1,5 +1,5 @@
-// Classifies every cell by how the surface meets it: groups of clusters first, then clusters, then
-// cells, since the class of a ball holds for all balls in it.
+// Classifies every cell by how the surface meets it: the tree of groups first, then groups,
+// clusters, cells, since the class of a ball holds for all balls in it.
 #pragma once
 
 #include <span>
@@ -15,10 +15,41 @@ class CellClassifier {
  public:
   explicit CellClassifier(const PoseWork<Surface>& work) : work_(work) {}
 
+  // Notes the parts that the tree of groups shows to be free, and adds what of them was not seen.
+  // Returns false if these are all, which takes far less than run().
+  bool finds_open_groups() {
+    work_.states.open_groups.clear();
+    const std::vector<GroupTreeNode>& tree = work_.level.group_tree();
+    std::uint32_t node = 0, end_of_free = 0;  // nodes before it are in a free ball
+    while (node < tree.size()) {
+      const auto& [ball, next, group] = tree[node];
+      bool is_free = node < end_of_free;
+      ++node;
+      if (group != GroupTreeNode::kNone) {
+        is_free ? add_free_rows(ball.begin, ball.end) : work_.states.open_groups.push_back(group);
+        continue;
+      }
+      const Vec3 center = work_.to_surface * ball.center;
+      if (!is_free && !tells_of_parts(work_.surface, center, ball.radius)) continue;
+      const BallClass in_ball = work_.surface.classify_ball(center, ball.radius);
+      if (!is_free && in_ball.side == Side::free) {
+        work_.states.set(ball, ClusterClass::free);
+        is_free = true;
+        end_of_free = next;
+      }
+      if (is_free && adds_as_one(ball, in_ball)) node = next;
+    }
+    work_.states.unseen.add(unseen_);
+    unseen_ = {};
+    return !work_.states.open_groups.empty();
+  }
+
+  // Classifies the groups that finds_open_groups() has left.
   void run(ParallelRegion& region) {
-    region.loop(work_.level.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
+    const std::vector<std::uint32_t>& groups = work_.states.open_groups;
+    region.loop(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
       CellClassifier part(work_);
-      for (std::size_t g = begin; g < end; ++g) part.classify_group(static_cast<std::uint32_t>(g));
+      for (std::size_t k = begin; k < end; ++k) part.classify_group(groups[k]);
       work_.states.unseen.add_atomically(part.unseen_);
     });
     work_.list_uniform();
@@ -37,36 +68,35 @@ class CellClassifier {
         group.end - group.begin > 1 && tells_of_parts(work_.surface, center, group.ball.radius);
     BallClass in_ball;
     if (tells) in_ball = work_.surface.classify_ball(center, group.ball.radius);
-    const bool is_mixed = tells && sight_of<Surface>(in_ball) == Sight::mixed;
-    if (tells && !is_mixed && in_ball.side == Side::free) return set_free(group.ball, in_ball);
+    if (tells && in_ball.side == Side::free) return set_free(group.ball, in_ball);
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const CellCluster& part = work_.level.cluster(root);
-      if (tells && !is_mixed &&
+      if (tells &&
           is_free_part(work_.surface, in_ball, work_.to_surface * part.center, part.radius))
-        work_.states.set(part, ClusterClass::free);
+        set_free(part, in_ball);
       else
         classify(root);
     }
   }
 
-  // Notes a cluster, or a part of one, that is free, and adds what of it was not seen.
+  // Notes a cluster, or a part of one, that is free, and adds what of it was not seen. `in_ball` is
+  // the class of a ball about it.
   void set_free(const CellCluster& part, const BallClass& in_ball) {
     work_.states.set(part, ClusterClass::free);
-    const Sight sight = sight_of<Surface>(in_ball);
-    if (sight == Sight::mixed) {
-      for (std::uint32_t i = part.begin; i < part.end; ++i) add_free_cell(i);
-    } else if (sight != Sight::seen) {
-      unseen_.add(work_.level.weight(part.begin, part.end), sight);
-    }
+    if (!adds_as_one(part, in_ball)) add_free_rows(part.begin, part.end);
   }
-  // Adds what was not seen of a free cell, by its centroid or those of its blocks.
-  void add_free_cell(std::uint32_t i) {
-    const CellView cell = work_.level.cell(i);
-    const CellMeasure measure = work_.measure_of(cell);
-    if (is_compact(cell.radius, work_.tool_radius.length))
-      return measure.add_free(work_.level.mass(i), Sight::mixed, unseen_);
-    for (std::uint32_t b = cell.begin; b < cell.end; ++b)
-      measure.add_free(cell.masses[b], Sight::mixed, unseen_);
+  // Adds what was not seen of free rows, where their ball tells that for all of them; otherwise
+  // returns false.
+  bool adds_as_one(const CellCluster& rows, const BallClass& in_ball) {
+    const Sight sight = sight_of<Surface>(in_ball);
+    if (sight == Sight::mixed) return false;
+    if (sight != Sight::seen) unseen_.add(work_.level.weight(rows.begin, rows.end), sight);
+    return true;
+  }
+  // Adds what was not seen of free rows, part by part.
+  void add_free_rows(std::uint32_t begin, std::uint32_t end) {
+    if constexpr (TellsSight<Surface>)
+      add_unseen(work_.surface, work_.to_surface, work_.level.parts(begin, end), unseen_);
   }
 
   void classify(std::uint32_t root) {
@@ -140,7 +170,7 @@ class CellClassifier {
     const Side side = side_of(work_.surface, in_ball, center, view.radius);
     if (side != Side::ambiguous) {
       work_.states.set(i, side);
-      if (side == Side::free && sight_of<Surface>(in_ball) != Sight::seen) add_free_cell(i);
+      if (side == Side::free && sight_of<Surface>(in_ball) != Sight::seen) add_free_rows(i, i + 1);
       return;
     }
     CellResult& result = work_.states.results[i];

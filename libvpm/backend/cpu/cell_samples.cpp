@@ -76,6 +76,22 @@ std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface
 }
 
 VPM_VECTOR_CLONES
+void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,
+                UnseenSum& unseen) {
+  static_assert(FreeParts::kPadding >= kFour - 1);
+  for (std::size_t first = 0; first < parts.count; first += kFour) {
+    const Vec3x4 centroid(load<Double4>(parts.x + first), load<Double4>(parts.y + first),
+                          load<Double4>(parts.z + first));
+    const auto [is_in_image, is_seen] = surface.view_of(to_surface * centroid);
+    if (all(is_seen)) continue;
+    for (std::size_t k = 0; k < kFour && first + k < parts.count; ++k) {
+      if (is_seen[k] == 0)
+        unseen.add(parts.weight[first + k], is_in_image[k] != 0 ? Sight::hole : Sight::out_of_view);
+    }
+  }
+}
+
+VPM_VECTOR_CLONES
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals) {
   const std::size_t count = places.size();

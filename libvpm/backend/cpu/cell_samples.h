@@ -7,6 +7,7 @@
 #include <span>
 #include <type_traits>
 
+#include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/measure/cell_measure.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
@@ -40,6 +41,10 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> p
 // Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
                                std::uint32_t count);
+
+// Adds those parts of the tool that are free and were not seen at their centroids.
+void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,
+                UnseenSum& unseen);
 
 // True for a surface that vectors sample at several places at once.
 template <class Surface>

@@ -75,6 +75,7 @@ struct CellStates {
     cut.reserve(level.size());
     cut_clusters.reserve(level.roots().size());
     uniform.reserve(level.roots().size());
+    open_groups.reserve(level.groups().size());
     parts[0].front.reserve(level.size());
   }
 
@@ -120,8 +121,9 @@ struct CellStates {
   std::vector<PieceIndex> far;       // far pieces, from SpatialLevel::first_piece() of each cell on
   // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
-  std::vector<std::uint32_t> uniform;  // roots of clusters to be pushed along one normal
-  std::vector<std::uint32_t> cut;      // rows of cut cells, ascending
+  std::vector<std::uint32_t> open_groups;  // not known to be free before they are classified
+  std::vector<std::uint32_t> uniform;      // roots of clusters to be pushed along one normal
+  std::vector<std::uint32_t> cut;          // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
   std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
   UnseenSum unseen;                 // of the pose, over all cells
@@ -157,8 +159,11 @@ struct PoseWork {
   // Lists the clusters that the classifier has found uniform.
   void list_uniform() const {
     states.uniform.clear();
-    for (std::uint32_t root = 0; root < level.roots().size(); ++root)
-      if (states.is_uniform(level.cluster(root).begin)) states.uniform.push_back(root);
+    for (const std::uint32_t open : states.open_groups) {
+      const CellGroup& group = level.groups()[open];
+      for (std::uint32_t root = group.begin; root < group.end; ++root)
+        if (states.is_uniform(level.cluster(root).begin)) states.uniform.push_back(root);
+    }
   }
 };
 

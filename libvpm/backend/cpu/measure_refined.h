@@ -43,8 +43,11 @@ class RefinedMeasure {
     const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
     const PoseWork<Surface> work{tool_radius_, level_, surface, to_surface, cells_};
     cells_.unseen = {};
+    CellClassifier classifier(work);
+    if (!classifier.finds_open_groups()) return all_free(work, memory);
     ParallelRegion region;
-    CellClassifier(work).run(region);
+    classifier.run(region);
+    if (next_busy(cells_.cells, 0, level_.size()) == level_.size()) return all_free(work, memory);
     CutCells cut(tool_, level_, to_surface, cells_);
     cut.list();
     InsideOf<Surface> inside(work, cut);
@@ -75,6 +78,15 @@ class RefinedMeasure {
     if (!is_coherent_) return nullptr;
     while (memories_.size() <= place) memories_.emplace_back(level_.size(), level_.roots().size());
     return &memories_[place];
+  }
+  // Returns what a body gives whose cells were all found free.
+  template <class Surface>
+  BodySum all_free(const PoseWork<Surface>& work, PoseMemory* memory) {
+    BodySum result;
+    work.states.cut.clear();
+    if constexpr (TellsSight<Surface>) result.unseen = work.states.unseen;
+    if (memory != nullptr) memory->turn();  // in free space there is nothing to look for
+    return result;
   }
   // Adds cut cells and those that `inside` has taken; returns how many of the latter count. The
   // others become free: they were hidden, not inside.

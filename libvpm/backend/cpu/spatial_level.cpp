@@ -1,10 +1,13 @@
 #include "libvpm/backend/cpu/spatial_level.h"
 
+#include <algorithm>
+
 namespace vpm {
 namespace {
 
 constexpr std::uint32_t kFewCells = 8;  // a node of no more has no children
 constexpr std::size_t kGroupClusters = 8;
+constexpr std::uint32_t kGroupChildren = 8;         // most nodes below one of the tree of groups
 constexpr double kGroupReach = 2.5 * kPlanarReach;  // in tool radii
 // Factor that keeps a group's ball about the cells of its clusters, though not about the clusters'
 // own balls, however their projections are rounded.
@@ -21,6 +24,7 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
     add_nodes(tool, level, c.begin, c.end);
   }
   add_groups(tool, level);
+  add_group_nodes(tool, level, 0, static_cast<std::uint32_t>(groups_.size()));
   const std::vector<BlockMass> block_masses = vpm::block_masses(level);
   for (const std::uint32_t sphere : spheres_) {
     masses_.push_back(clusters.masses[sphere]);
@@ -28,7 +32,7 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
                          block_masses.begin() + level.block_begin[sphere + 1]);
     add_cell(tool, level, sphere);
   }
-  add_weights(tool.radius);
+  add_parts(tool.radius);
   add_graph(level.graph);
 }
 
@@ -65,6 +69,25 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
   for (CellGroup& group : groups_) group.ball.radius *= kGroupRounding;
 }
 
+// Adds the tree of groups [begin, end), which are side by side.
+void SpatialLevel::add_group_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
+                                   std::uint32_t end) {
+  const std::size_t node = group_tree_.size();
+  const std::uint32_t count = end - begin;
+  if (count == 1) {
+    group_tree_.push_back({groups_[begin].ball, static_cast<std::uint32_t>(node + 1), begin});
+    return;
+  }
+  CellCluster ball = enclosing_cluster(tool, level, spheres_, groups_[begin].ball.begin,
+                                       groups_[end - 1].ball.end);
+  ball.radius *= kGroupRounding;
+  group_tree_.push_back({ball});
+  const std::uint32_t children = std::min(count, kGroupChildren);
+  for (std::uint32_t k = 0; k < children; ++k)
+    add_group_nodes(tool, level, begin + k * count / children, begin + (k + 1) * count / children);
+  group_tree_[node].next = static_cast<std::uint32_t>(group_tree_.size());
+}
+
 void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
   Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_radius[sphere],
             static_cast<std::uint32_t>(blocks_.size()), 0};
@@ -81,18 +104,31 @@ void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint
   cells_.push_back(cell);
 }
 
-void SpatialLevel::add_weights(double tool_radius) {
+void SpatialLevel::add_parts(double tool_radius) {
   ToolSum::Sum all;
-  weights_.push_back(all);
   for (std::uint32_t row = 0; row < size(); ++row) {
     const Cell& cell = cells_[row];
-    if (is_compact(cell.radius, tool_radius)) {
-      all.add(masses_[row].weight);
-    } else {
-      for (std::uint32_t b = cell.begin; b < cell.end; ++b) all.add(block_masses_[b].weight);
-    }
+    const std::size_t first = part_weights_.size();
+    first_part_.push_back(static_cast<std::uint32_t>(first));
     weights_.push_back(all);
+    if (is_compact(cell.radius, tool_radius)) {
+      add_part(masses_[row]);
+    } else {
+      for (std::uint32_t b = cell.begin; b < cell.end; ++b) add_part(block_masses_[b]);
+    }
+    for (std::size_t k = first; k < part_weights_.size(); ++k) all.add(part_weights_[k]);
   }
+  first_part_.push_back(static_cast<std::uint32_t>(part_weights_.size()));
+  weights_.push_back(all);
+  for (std::vector<double>* const row : {&part_x_, &part_y_, &part_z_})
+    row->insert(row->end(), FreeParts::kPadding, 0);
+}
+
+void SpatialLevel::add_part(const BlockMass& mass) {
+  part_x_.push_back(mass.centroid.x);
+  part_y_.push_back(mass.centroid.y);
+  part_z_.push_back(mass.centroid.z);
+  part_weights_.push_back(UnseenSum::rounded(mass.weight));
 }
 
 void SpatialLevel::add_graph(const SphereGraph& graph) {

@@ -21,6 +21,25 @@ struct CellGroup {
   std::uint32_t begin = 0, end = 0;
 };
 
+// Describes a node of the tree whose leaves are the groups; the nodes below it follow it.
+struct GroupTreeNode {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  CellCluster ball;             // of the cells of its groups
+  std::uint32_t next = 0;       // the first node after all nodes below this one
+  std::uint32_t group = kNone;  // index of a leaf's group
+};
+
+// Lists parts of the tool, coordinate by coordinate, as vectors load them: three more numbers may
+// be read past the last.
+struct FreeParts {
+  static constexpr std::size_t kPadding = 3;
+
+  const double *x = nullptr, *y = nullptr, *z = nullptr;  // centroids, about the centre of mass, m
+  const ToolSum::Sum* weight = nullptr;                   // in parts of the tool's volume
+  std::size_t count = 0;
+};
+
 // Holds a level's cells in rows, ordered by place. Immutable.
 class SpatialLevel {
  public:
@@ -42,8 +61,15 @@ class SpatialLevel {
   }
   std::size_t most_pieces() const { return samples_.size() + blocks_.size(); }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
+  // Returns the parts that stand for rows [begin, end) where these are taken whole (WholePart):
+  // compact cells, and the blocks of others.
+  FreeParts parts(std::uint32_t begin, std::uint32_t end) const {
+    const std::size_t first = first_part_[begin];
+    return {part_x_.data() + first, part_y_.data() + first, part_z_.data() + first,
+            part_weights_.data() + first, first_part_[end] - first};
+  }
   // Returns the volume of rows [begin, end), in parts of the tool's, with the bits of the sum over
-  // the parts that stand for them (WholePart).
+  // parts().
   ToolSum::Sum weight(std::uint32_t begin, std::uint32_t end) const {
     return {weights_[end].value - weights_[begin].value};
   }
@@ -55,6 +81,7 @@ class SpatialLevel {
   std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
   const CellCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
   const std::vector<CellGroup>& groups() const { return groups_; }
+  const std::vector<GroupTreeNode>& group_tree() const { return group_tree_; }
 
  private:
   struct Cell {
@@ -65,14 +92,20 @@ class SpatialLevel {
 
   void add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end);
   void add_groups(const ToolModel& tool, const Level& level);
+  void add_group_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
+                       std::uint32_t end);
   void add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
-  void add_weights(double tool_radius);
+  void add_parts(double tool_radius);
+  void add_part(const BlockMass& mass);
 
   std::vector<std::uint32_t> spheres_;
   std::vector<Cell> cells_;
   std::vector<BlockMass> masses_;
-  std::vector<ToolSum::Sum> weights_;  // of the rows before each row, and of all
+  std::vector<double> part_x_, part_y_, part_z_;
+  std::vector<ToolSum::Sum> part_weights_;
+  std::vector<std::uint32_t> first_part_;  // of each row, and one past the last
+  std::vector<ToolSum::Sum> weights_;      // of the rows before each row, and of all
   std::vector<CellBlock> blocks_;
   std::vector<BlockMass> block_masses_;
   std::vector<CellSample> samples_;
@@ -80,6 +113,7 @@ class SpatialLevel {
   std::vector<CellTreeNode> nodes_;
   std::vector<std::uint32_t> roots_, root_of_row_;
   std::vector<CellGroup> groups_;
+  std::vector<GroupTreeNode> group_tree_;
 };
 
 }  // namespace vpm

@@ -136,10 +136,20 @@ struct DepthSampler {
   // Returns what the camera sees in the direction of a place: `seen` where sample_and() knows a
   // surface.
   VPM_HD Sight sight_at(const Vec3& x) const {
-    const Projection<double> at = project(x);
-    if (!at.is_seen) return Sight::out_of_view;
-    const bool is_known = inverse_depth(truncated(at.u + 0.5), truncated(at.v + 0.5)) > 0;
-    return is_known ? Sight::seen : Sight::hole;
+    const ViewOf<double> view = view_of(x);
+    return view.is_seen ? Sight::seen : view.is_in_image ? Sight::hole : Sight::out_of_view;
+  }
+  // Holds where the image shows a place's direction, and where it has measured a surface there.
+  template <class Real>
+  struct ViewOf {
+    MaskOf<Real> is_in_image{}, is_seen{};
+  };
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD ViewOf<RealOf<Place>> view_of(const Place& x) const {
+    using Mask = MaskOf<RealOf<Place>>;
+    const auto [is_in_image, u, v] = project(x);
+    const Mask is_known = inverse_depth(truncated(u + 0.5), truncated(v + 0.5)) > 0;
+    return {is_in_image, static_cast<Mask>(is_in_image & is_known)};
   }
 
  private:

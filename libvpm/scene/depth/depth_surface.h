@@ -114,8 +114,11 @@ struct DepthSurface : DepthSampler {
   }
 
   // True if the class of a ball tells about the balls in it: their pixels are among its own, unless
-  // the ball is so near that the bound of its projection is loose.
-  VPM_HD bool tells_of_parts(Vec3 center, double radius) const { return center.z > 2 * radius; }
+  // the ball is so near that the bound of its projection is loose. Behind the camera there are
+  // none.
+  VPM_HD bool tells_of_parts(Vec3 center, double radius) const {
+    return center.z > 2 * radius || center.z + radius <= 0;
+  }
   // True if the class of a ball shows a ball in it to be free.
   VPM_HD bool is_free_part(const BallClass& in_ball, Vec3 center, double radius) const {
     return (center.z + radius) * in_ball.range.high < 1;
