@@ -76,6 +76,16 @@ Result LevelQuery::run(const Scene& scene, const Pose& pose, std::size_t tool,
   return result;
 }
 
+Collides LevelQuery::collides(const Scene& scene, const Pose& pose, double unseen_limit,
+                              std::size_t tool, std::span<const Pose> solids) {
+  ToolQuery& query = impl().query_of(tool).query();
+  const auto start = std::chrono::steady_clock::now();
+  const Collides found = query.collides(HandleAccess::held(scene), pose, unseen_limit,
+                                        {HandleAccess::solids(scene), solids});
+  impl().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return found;
+}
+
 void LevelQuery::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
   if (impl().request.deadline_seconds)
     throw Error(ErrorKind::invalid_argument, "many jobs have no deadline", {},

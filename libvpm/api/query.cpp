@@ -38,6 +38,12 @@ Result Query::run(const Scene& scene, const Pose& pose, std::span<const Pose> so
                                     {HandleAccess::solids(scene), solids});
 }
 
+Collides Query::collides(const Scene& scene, const Pose& pose, double unseen_limit,
+                         std::span<const Pose> solids) {
+  return impl().queries.front().collides(HandleAccess::held(scene), pose, unseen_limit,
+                                         {HandleAccess::solids(scene), solids});
+}
+
 void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
   ToolQuery::run(impl().pointers, HandleAccess::held(scene), jobs, results,
                  HandleAccess::solids(scene));

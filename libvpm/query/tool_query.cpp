@@ -107,6 +107,25 @@ Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given, const S
   return finished(sum, pose, closure);
 }
 
+Collides ToolQuery::collides(std::span<const AnyBody> scene, const Pose& given, double unseen_limit,
+                             const SolidsAt& solids) {
+  if (!(unseen_limit >= 0 && unseen_limit <= 1))
+    invalid("the part of the tool that may be unseen lies between 0 and 1");
+  if (!refined_ || options_.coherent) return vpm::collides(run(scene, given, solids), unseen_limit);
+  const Pose pose = exact_pose(given);
+  check(scene, solids);
+  SceneSum sum;
+  parts_.clear();
+  has_joined_states_ = false;
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    const std::optional<BodySum> found = refined_->run_until(Until::hit, scene[k], pose, k);
+    if (!found || counts(found->sum)) return Collides::yes;
+    sum.add(*found);
+  }
+  const double closure = add_solids(solids, pose, sum);
+  return vpm::collides(finished(sum, pose, closure), unseen_limit);
+}
+
 std::vector<Result> ToolQuery::parts() const {
   std::vector<Result> results(parts_.size());
   std::vector<bool> is_taken(parts_.size());

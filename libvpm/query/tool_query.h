@@ -29,6 +29,10 @@ class ToolQuery {
   Result run(std::span<const AnyBody> scene, const Pose& pose, const SolidsAt& solids = {});
   Result run(const AnyBody& body, const Pose& pose) { return run(std::span(&body, 1), pose); }
 
+  // Returns collides() of that answer, sooner where it can. Has the contract of Query::collides.
+  Collides collides(std::span<const AnyBody> scene, const Pose& pose, double unseen_limit,
+                    const SolidsAt& solids = {});
+
   // Stores the answers of many jobs, whose tools are indices into `queries`. Has the contract of
   // Query::run. Throws Error(invalid_argument) unless the queries have the same options save level
   // and stiffness. A device launches up to 16 tools at once.

@@ -176,7 +176,8 @@ TEST(Visibility, OfFreeToolsIsThatOfTheirParts) {
       RefinedMeasure measure(tool, tool.level(0), {});
       for (int k = 0; k < 200; ++k) {
         SCOPED_TRACE(k);
-        const Pose pose{generic_rotation(), {0.006 * k - 0.6, 0.3 - 0.003 * k, 0.3 + 0.006 * (k % 80)}};
+        const Pose pose{generic_rotation(),
+                        {0.006 * k - 0.6, 0.3 - 0.003 * k, 0.3 + 0.006 * (k % 80)}};
         const BodySum found = measure.run(body, pose);
         ASSERT_EQ(found.sum.volume.value, 0);
         const Pose to_surface = pose_in_body(body.to_world(), pose, tool.center_of_mass);
@@ -228,6 +229,43 @@ TEST(Collides, IsUnknownFarBehindAWall) {
   EXPECT_EQ(at(0.8), Collides::no);
   EXPECT_EQ(at(0.95), Collides::yes);
   for (const double z : {1.4, 1.6, 3.0}) EXPECT_EQ(at(z), Collides::unknown) << z;
+}
+
+// However early it ends, the answer is that of the whole query.
+TEST(Collides, IsThatOfTheWholeQuery) {
+  int found[3] = {};
+  for (const char* scene : {"wall", "groove", "plate", "step"}) {
+    const Cloud cloud = rough(scene);
+    const AnyBody image(cloud), points(without_camera(cloud));
+    const std::vector<std::vector<AnyBody>> scenes{{image}, {points}, {image, points}};
+    for (const Shadows shadows : {Shadows::near, Shadows::solid}) {
+      QueryOptions options;
+      options.shadows = shadows;
+      const ToolModel tool = lattice_cube(kEdge, 9, 2);
+      ToolQuery whole(tool, options), early(tool, options);
+      for (std::size_t s = 0; s < (shadows == Shadows::near ? scenes.size() : 1); ++s) {
+        for (int k = 0; k < 30; ++k) {
+          SCOPED_TRACE(::testing::Message() << scene << ' ' << s << ' ' << k);
+          const Pose pose{generic_rotation(), {0.04 * k - 0.6, 0.02 * k - 0.3, 0.5 + 0.04 * k}};
+          const double limit = 0.05 * (k % 5);
+          const Collides expected = collides(whole.run(scenes[s], pose), limit);
+          ASSERT_EQ(early.collides(scenes[s], pose, limit), expected);
+          ++found[static_cast<int>(expected)];
+          // What ended early leaves nothing behind.
+          testing::expect_equal(early.run(scenes[s], pose), whole.run(scenes[s], pose));
+        }
+      }
+    }
+  }
+  for (const int count : found) EXPECT_GT(count, 15);
+}
+
+TEST(Collides, RefusesALimitThatIsNoPart) {
+  const AnyBody wall(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  ToolQuery query(tool, {});
+  for (const double limit : {-0.1, 1.1, std::nan("")})
+    EXPECT_THROW(query.collides({&wall, 1}, {}, limit), Error) << limit;
 }
 
 }  // namespace

@@ -45,13 +45,28 @@ class CellClassifier {
   }
 
   // Classifies the groups that finds_open_groups() has left.
-  void run(ParallelRegion& region) {
+  void classify(ParallelRegion& region) {
     const std::vector<std::uint32_t>& groups = work_.states.open_groups;
     region.loop(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
       CellClassifier part(work_);
       for (std::size_t k = begin; k < end; ++k) part.classify_group(groups[k]);
       work_.states.unseen.add_atomically(part.unseen_);
     });
+  }
+  // Does the same until a part of the tool surely counts, and returns true then.
+  bool finds_volume() {
+    for (const std::uint32_t index : work_.states.open_groups) {
+      classify_group(index);
+      const CellCluster& rows = work_.level.groups()[index].ball;
+      for (std::uint32_t i = rows.begin; i < rows.end; ++i)
+        if (surely_counts(i)) return true;
+    }
+    work_.states.unseen.add(unseen_);
+    unseen_ = {};
+    return false;
+  }
+  // Finds the directions of uniform clusters, once all groups are classified.
+  void push_uniform(ParallelRegion& region) {
     work_.list_uniform();
     region.loop(work_.states.uniform.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
       push(std::span(work_.states.uniform).subspan(begin, end - begin));
@@ -77,6 +92,15 @@ class CellClassifier {
       else
         classify(root);
     }
+  }
+
+  // True if a classified cell adds to the volume whatever the others are.
+  bool surely_counts(std::uint32_t i) const {
+    const CellClass found = work_.states.cells[i];
+    if (found == CellClass::cut || (Surface::kTellsInside && found == CellClass::partial))
+      return counts(work_.states.results[i].sum);
+    return Surface::kTellsInside && found == CellClass::uniform &&
+           UnseenSum::rounded(work_.level.mass(i).weight).value > 0;
   }
 
   // Notes a cluster, or a part of one, that is free, and adds what of it was not seen. `in_ball` is

@@ -22,14 +22,15 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       cells_(level_),
       is_coherent_(options.coherent) {}
 
-BodySum RefinedMeasure::run(const AnyBody& body, const Pose& pose, std::size_t place) {
+std::optional<BodySum> RefinedMeasure::run_until(Until until, const AnyBody& body, const Pose& pose,
+                                                 std::size_t place) {
   constexpr double kPlaces = 1.25;  // in tool radii: holds most sampled places
   return body.visit([&](const auto& one) {
     auto surface = one.surface();
     const Pose& to_world = one.to_world();
     enter_near(surface, pose_in_body(to_world, pose, tool_.center_of_mass).translation,
                kPlaces * tool_.radius);
-    return run_on(surface, to_world, pose, place);
+    return run_on_until(until, surface, to_world, pose, place);
   });
 }
 

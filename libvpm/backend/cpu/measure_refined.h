@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "libvpm/backend/cpu/cell_classifier.h"
@@ -25,19 +26,33 @@ template <class Surface>
 using InsideOf =
     std::conditional_t<Surface::kTellsInside, CameraVisibility<Surface>, InsideFlood<Surface>>;
 
+// Says when a measure may end: with the whole sum, or, where only a hit is asked for, as soon as a
+// part of the tool surely counts.
+enum class Until { whole_sum, hit };
+
 class RefinedMeasure {
  public:
   // Uses the options about coherent poses and occluded space.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
   // Returns what a body gives, number `place` of its scene: coherent poses remember each. With one
-  // thread, allocates nothing after the first call on a scene.
-  BodySum run(const AnyBody& body, const Pose& pose, std::size_t place = 0);
+  // thread, allocates nothing after the first call on a scene. Returns null if it ends at a hit,
+  // which coherent poses never do.
+  BodySum run(const AnyBody& body, const Pose& pose, std::size_t place = 0) {
+    return *run_until(Until::whole_sum, body, pose, place);
+  }
+  std::optional<BodySum> run_until(Until until, const AnyBody& body, const Pose& pose,
+                                   std::size_t place = 0);
 
   // Does so for any surface. `to_world` maps its frame to the world's.
   template <MeasuredBody Surface>
   BodySum run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
                  std::size_t place = 0) {
+    return *run_on_until(Until::whole_sum, surface, to_world, pose, place);
+  }
+  template <MeasuredBody Surface>
+  std::optional<BodySum> run_on_until(Until until, const Surface& surface, const Pose& to_world,
+                                      const Pose& pose, std::size_t place = 0) {
     BodySum result;
     PoseMemory* const memory = memory_of(place);
     const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
@@ -45,9 +60,12 @@ class RefinedMeasure {
     cells_.unseen = {};
     CellClassifier classifier(work);
     if (!classifier.finds_open_groups()) return all_free(work, memory);
+    const bool may_end = until == Until::hit && memory == nullptr;
+    if (may_end && classifier.finds_volume()) return std::nullopt;
     ParallelRegion region;
-    classifier.run(region);
+    if (!may_end) classifier.classify(region);
     if (next_busy(cells_.cells, 0, level_.size()) == level_.size()) return all_free(work, memory);
+    classifier.push_uniform(region);
     CutCells cut(tool_, level_, to_surface, cells_);
     cut.list();
     InsideOf<Surface> inside(work, cut);

@@ -84,6 +84,10 @@ class VPM_API LevelQuery {
   Result run(const Scene& scene, const Pose& pose, std::size_t tool = 0,
              std::span<const Pose> solids = {});
 
+  // Returns what Query::collides() does, at the level of the moment; a deadline learns nothing.
+  Collides collides(const Scene& scene, const Pose& pose, double unseen_limit = kUnseenLimit,
+                    std::size_t tool = 0, std::span<const Pose> solids = {});
+
   // Stores the answers of many jobs, as Query does, each at the level of its tool. Throws
   // Error(invalid_argument) also for a request with a deadline.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);

@@ -49,6 +49,13 @@ class VPM_API Query {
   // printed, which knows no solids.
   Result run(const Scene& scene, const Pose& pose, std::span<const Pose> solids = {});
 
+  // Returns vpm::collides() of the answer at a pose. On the CPU it ends as soon as a part of the
+  // tool is surely inside, or all of it is free: where the tool is inside, in a thirtieth of the
+  // time of run(). Leaves states() and parts() unspecified. Throws what run() throws, and
+  // Error(invalid_argument) for a limit outside of [0, 1].
+  Collides collides(const Scene& scene, const Pose& pose, double unseen_limit = kUnseenLimit,
+                    std::span<const Pose> solids = {});
+
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
   // thousands of poses of up to 16 tools at once. `results` must have the size of `jobs`, else
   // throws Error(invalid_argument), as for a job without such a tool and for coherent queries of
