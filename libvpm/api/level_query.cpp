@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libvpm/api/handle_access.h"
@@ -40,6 +42,10 @@ struct LevelQuery::Impl {
     }
   }
 
+  Impl(const Impl& other) : tools(other.tools), request(other.request), queries(other.queries) {
+    for (LevelToolQuery& query : queries) together.push_back(&query.query());
+  }
+
   LevelToolQuery& query_of(std::size_t tool) {
     if (tool >= queries.size())
       throw Error(ErrorKind::invalid_argument, "the query has no tool " + std::to_string(tool));
@@ -59,12 +65,17 @@ LevelQuery::LevelQuery(const Tool& tool, const QueryOptions& options, const Leve
 LevelQuery::LevelQuery(std::span<const Tool> tools, const QueryOptions& options,
                        const LevelRequest& request, const Scene& scene, const Pose& first_pose)
     : impl_(std::make_unique<Impl>(tools, options, request, scene, first_pose)) {}
+LevelQuery::LevelQuery(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 LevelQuery::~LevelQuery() = default;
 LevelQuery::LevelQuery(LevelQuery&&) noexcept = default;
 LevelQuery& LevelQuery::operator=(LevelQuery&&) noexcept = default;
 
 LevelQuery::Impl& LevelQuery::impl() const {
   return held_by(impl_, "LevelQuery");
+}
+
+LevelQuery LevelQuery::another() const {
+  return LevelQuery(std::make_unique<Impl>(impl()));
 }
 
 Result LevelQuery::run(const Scene& scene, const Pose& pose, std::size_t tool,

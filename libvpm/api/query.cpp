@@ -1,6 +1,8 @@
 #include <vpm/query.h>
 
 #include <deque>
+#include <memory>
+#include <utility>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
@@ -15,6 +17,9 @@ struct Query::Impl {
     for (const Tool& tool : tools) queries.emplace_back(HandleAccess::held(tool), options);
     for (ToolQuery& query : queries) pointers.push_back(&query);
   }
+  Impl(const Impl& other) : tools(other.tools), queries(other.queries) {
+    for (ToolQuery& query : queries) pointers.push_back(&query);
+  }
 
   std::vector<Tool> tools;  // the queries refer to their models
   std::deque<ToolQuery> queries;
@@ -25,12 +30,17 @@ Query::Query(const Tool& tool, const QueryOptions& options)
     : Query(std::span<const Tool>(&tool, 1), options) {}
 Query::Query(std::span<const Tool> tools, const QueryOptions& options)
     : impl_(std::make_unique<Impl>(tools, options)) {}
+Query::Query(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
 Query::Impl& Query::impl() const {
   return held_by(impl_, "Query");
+}
+
+Query Query::another() const {
+  return Query(std::make_unique<Impl>(impl()));
 }
 
 Result Query::run(const Scene& scene, const Pose& pose, std::span<const Pose> solids) {

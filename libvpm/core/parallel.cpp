@@ -80,6 +80,9 @@ struct LoopTask {
 // thread.
 thread_local bool is_in_region = false;
 
+// True while a OneThread of this thread lives.
+thread_local bool is_alone = false;
+
 }  // namespace
 
 void set_thread_count(int threads) {
@@ -99,7 +102,7 @@ void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
-  if (count <= grain || thread_count() == 1) {
+  if (count <= grain || is_alone || thread_count() == 1) {
     for (std::size_t begin = 0; begin < count; begin += grain)
       body(begin, std::min(count, begin + grain));
     return;
@@ -142,7 +145,13 @@ bool ParallelRegion::Part::take(bool is_first, std::uint64_t& range) {
   }
 }
 
-ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
+OneThread::OneThread() : was_alone_(std::exchange(is_alone, true)) {}
+
+OneThread::~OneThread() {
+  is_alone = was_alone_;
+}
+
+ParallelRegion::ParallelRegion() : threads_(is_in_region || is_alone ? 1 : thread_count()) {
   if (threads_ == 1) return;
   part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMaxParts);
   // A thread that is new to the scheduler has no index yet (negative); it will get index 0.

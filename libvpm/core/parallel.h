@@ -17,6 +17,19 @@ namespace vpm {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Keeps the work of this thread to it while the object lives: its loops have one thread. For
+// threads that each have work of their own.
+class OneThread {
+ public:
+  OneThread();
+  ~OneThread();
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  bool was_alone_;
+};
+
 // Runs several short parallel loops in a row on the same threads. Between loops the threads spin
 // instead of sleeping, since waking them takes longer than such a loop. Each thread starts on the
 // same part of the range in every region of equal size, so that what it wrote last time is still in

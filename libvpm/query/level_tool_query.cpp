@@ -112,6 +112,16 @@ LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& option
   reason_ = reason_now();
 }
 
+LevelToolQuery::LevelToolQuery(const LevelToolQuery& other)
+    : request_(other.request_),
+      scale_(other.scale_),
+      queries_(other.queries_),
+      deadline_(other.deadline_),
+      used_(other.used_),
+      reason_(other.reason_) {
+  for (ToolQuery& query : queries_) query.share_surface_of(queries_.front());
+}
+
 // Returns the index of the finest level that the request allows.
 std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOptions& options,
                                           std::span<const AnyBody> scene, const Pose& pose) {

@@ -63,6 +63,9 @@ class LevelToolQuery {
                  const AnyBody& body, const Pose& first_pose)
       : LevelToolQuery(tool, options, request, std::span(&body, 1), first_pose) {}
 
+  // Makes one for another thread, at the same level; as the copy of a ToolQuery.
+  LevelToolQuery(const LevelToolQuery& other);
+
   // Returns the answer at the current level, and chooses the next level if there is a deadline.
   Result run(std::span<const AnyBody> scene, const Pose& pose, const SolidsAt& solids = {});
   Result run(const AnyBody& body, const Pose& pose) { return run(std::span(&body, 1), pose); }

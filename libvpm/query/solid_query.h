@@ -35,6 +35,9 @@ class SolidQuery {
  public:
   explicit SolidQuery(const ToolModel& tool) : tool_(tool) {}
 
+  // Makes one for another thread, which shares the tool's surface.
+  SolidQuery(const SolidQuery& other) : tool_(other.tool_), surface_(other.surface_) {}
+
   // Prepares the tool's surface, if that is not done. Throws Error(refused) if the tool keeps none.
   void prepare();
 

@@ -68,6 +68,19 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
   }
 }
 
+ToolQuery::ToolQuery(const ToolQuery& other)
+    : tool_(other.tool_),
+      level_(other.level_),
+      options_(other.options_),
+      states_(level_.sphere_count),
+      solid_query_(std::make_shared<SolidQuery>(*other.solid_query_)) {
+  if (other.device_) device_ = make_device_measure(tool_, level_, options_);
+  if (other.paper_) paper_ = std::make_unique<PaperMeasure>(*other.paper_);
+  if (!other.refined_) return;
+  refined_ = std::make_unique<RefinedMeasure>(*other.refined_);
+  refined_->forget();
+}
+
 // Checks that each body of a scene tells what solid occluded space is.
 void ToolQuery::check(std::span<const AnyBody> scene, const SolidsAt& solids) const {
   if (scene.empty() && solids.solids.empty()) invalid("a scene needs a body");

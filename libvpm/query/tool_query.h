@@ -24,6 +24,8 @@ class ToolQuery {
  public:
   // Throws what Query throws (vpm/query.h).
   ToolQuery(const ToolModel& tool, const QueryOptions& options);
+  // Makes one for another thread: shares what is immutable, and remembers no pose.
+  ToolQuery(const ToolQuery& other);
 
   // Returns the answer for one pose before a scene's bodies. Has the contract of Query::run.
   Result run(std::span<const AnyBody> scene, const Pose& pose, const SolidsAt& solids = {});

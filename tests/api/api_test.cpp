@@ -142,6 +142,50 @@ TEST(PublicApi, ThreadsShareToolAndScene) {
   EXPECT_EQ(of_thread[1], expected);
 }
 
+TEST(PublicApi, AnotherQueryAnswersForAnotherThread) {
+  const vpm::Scene scene = wall();
+  for (const vpm::Measure measure : {vpm::Measure::refined, vpm::Measure::paper}) {
+    vpm::QueryOptions options;
+    options.measure = measure;
+    options.level = 40;
+    options.stiffness = 300;
+    vpm::Query first(tool(), options);
+    vpm::LevelRequest request;
+    options.level = 0;
+    request.for_scene = true;
+    vpm::LevelQuery levels(tool(), options, request, scene, behind(0));
+    std::vector<vpm::Result> expected, at_level;
+    for (int k = 0; k < 40; ++k) expected.push_back(first.run(scene, behind(0.01 * k - 0.2)));
+    for (int k = 0; k < 40; ++k) at_level.push_back(levels.run(scene, behind(0.01 * k - 0.2)));
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 3; ++t) {
+      threads.emplace_back([&, query = first.another(), level = levels.another()]() mutable {
+        EXPECT_EQ(query.level(), 40U);
+        EXPECT_EQ(level.level(), levels.finest_level());
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+          const vpm::Pose pose = behind(0.01 * static_cast<double>(k) - 0.2);
+          EXPECT_EQ(query.run(scene, pose), expected[k]);
+          EXPECT_EQ(level.run(scene, pose), at_level[k]);
+          EXPECT_EQ(query.collides(scene, pose), vpm::collides(expected[k]));
+          EXPECT_EQ(level.collides(scene, pose), vpm::collides(at_level[k]));
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+}
+
+TEST(PublicApi, AnotherQueryRemembersNoPose) {
+  const vpm::Scene scene = wall();
+  vpm::Query moving(tool(), {.coherent = true});
+  double remembered = 0;
+  for (int k = 0; k < 60; ++k) remembered = moving.run(scene, behind(0.01 * k)).volume;
+  ASSERT_GT(remembered, 0);  // wholly behind the wall, since it came through it
+  vpm::Query other = moving.another();
+  EXPECT_EQ(other.run(scene, behind(0.59)).volume, 0);
+  EXPECT_EQ(moving.run(scene, behind(0.59)).volume, remembered);
+}
+
 TEST(PublicApi, AStreamOfImagesHasTheBitsOfClouds) {
   vpm::DepthStream stream({kCamera.intrinsics, kSide, kSide, std::nullopt});
   vpm::Query query(tool());

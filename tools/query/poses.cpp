@@ -1,7 +1,13 @@
 // Modes of vpm-query that ask one tool at poses in a cloud, one by one or in batches.
+#include <vpm/device.h>
+
+#include <exception>
+#include <utility>
+
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
+#include "tools/query/pose_spread.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
 #include "tools/query/solid_scene.h"
@@ -27,21 +33,41 @@ class PoseQueries {
         query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
   void ask(const AskedPose& asked) {
-    const Result result = query_.run(scene_.scene(), asked.pose, 0, asked.solids);
-    write(asked, result);
-    if (setup_.view) setup_.view->add(0, asked.pose, result, query_);
-    last_ = asked;
+    write(answer(query_, asked_, asked));
+    if (setup_.view) setup_.view->add(0, asked.pose, last_result_, query_);
   }
 
   void ask_together(const std::vector<AskedPose>& asked) {
     std::vector<Result> results(asked.size());
     query_.run(scene_.scene(), jobs_of(asked), results);
-    for (std::size_t k = 0; k < asked.size(); ++k) write(asked[k], results[k]);
+    for (std::size_t k = 0; k < asked.size(); ++k)
+      write(answer_of(query_, asked_, asked[k], results[k]));
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses_of(asked));
-    last_ = asked.back();
   }
 
-  // Queries the last pose again, since a batch leaves no states of spheres.
+  // Asks all poses by several threads, each for poses of its own.
+  void ask_by_threads(PoseSource& source, int threads) {
+    std::vector<LevelQuery> queries;
+    for (int k = 0; k < threads; ++k) queries.push_back(query_.another());
+    const std::size_t first = asked_;
+    PoseSpread spread(
+        queries.size(),
+        [&](std::size_t thread, std::size_t index, const AskedPose& asked) {
+          return answer(queries[thread], first + index, asked);
+        },
+        [&](const AnsweredPose& answered) { write(answered); });
+    std::exception_ptr unread;
+    try {
+      for (auto poses = source.next(1); !poses.empty(); poses = source.next(1))
+        spread.add(std::move(poses.front()));
+    } catch (...) {
+      unread = std::current_exception();
+    }
+    spread.finish();  // what was read is answered first
+    if (unread) std::rethrow_exception(unread);
+  }
+
+  // Queries the last pose again, where its states of spheres are not those of the query.
   void ask_last_again() { query_.run(scene_.scene(), last_.pose, 0, last_.solids); }
 
   // Returns the number of poses that were asked, those of an interrupted run too.
@@ -52,14 +78,27 @@ class PoseQueries {
   const Pose& last() const { return last_.pose; }
 
  private:
-  void write(const AskedPose& asked, const Result& result) {
-    scene_.see(asked.pose, 0, result);
-    nlohmann::ordered_json line = result_line(asked_++, asked.id, result, query_.level(),
-                                              setup_.options.measure, query_.reason(), {});
-    if (setup_.arguments.bodies) line["bodies"] = bodies_of(query_.parts());
-    setup_.collisions.answer(result, line);
-    output_.append(line);
-    seconds_.push_back(query_.seconds());
+  // Asks the `index`-th pose. Threads may do so at once, each with its query.
+  AnsweredPose answer(LevelQuery& query, std::size_t index, const AskedPose& asked) const {
+    return answer_of(query, index, asked, query.run(scene_.scene(), asked.pose, 0, asked.solids));
+  }
+  AnsweredPose answer_of(const LevelQuery& query, std::size_t index, const AskedPose& asked,
+                         const Result& result) const {
+    AnsweredPose answered{asked, result,
+                          result_line(index, asked.id, result, query.level(),
+                                      setup_.options.measure, query.reason(), {}),
+                          query.seconds()};
+    if (setup_.arguments.bodies) answered.line["bodies"] = bodies_of(query.parts());
+    return answered;
+  }
+  void write(AnsweredPose answered) {
+    scene_.see(answered.asked.pose, 0, answered.result);
+    setup_.collisions.answer(answered.result, answered.line);
+    output_.append(answered.line);
+    seconds_.push_back(answered.seconds);
+    last_result_ = answered.result;
+    last_ = std::move(answered.asked);
+    ++asked_;
   }
 
   QuerySetup& setup_;
@@ -69,7 +108,30 @@ class PoseQueries {
   LevelQuery query_;
   std::vector<double> seconds_;
   AskedPose last_;
+  Result last_result_;
 };
+
+// Returns the number of threads that poses are spread over: 1 where each depends on the one before
+// it, where a device answers, and for a page, which shows the spheres of each.
+int threads_of(const QuerySetup& setup) {
+  const Arguments& a = setup.arguments;
+  const bool is_alone = a.poses.empty() || a.coherent || a.deadline_us || setup.view;
+  return is_alone || setup.options.device.is_cuda() ? 1 : thread_count();
+}
+
+// Asks all poses; returns true if the query holds the states of the last one's spheres.
+bool ask_all(const QuerySetup& setup, PoseSource& source, PoseQueries& queries) {
+  const Arguments& a = setup.arguments;
+  if (const int threads = threads_of(setup); threads > 1) {
+    queries.ask_by_threads(source, threads);
+    return false;
+  }
+  const bool together = a.batch > 1 && !a.bodies;  // a batch leaves no parts of bodies
+  const std::size_t most = together ? a.batch : 1;
+  for (auto poses = source.next(most); !poses.empty(); poses = source.next(most))
+    together ? queries.ask_together(poses) : queries.ask(poses.front());
+  return !together;
+}
 
 }  // namespace
 
@@ -81,14 +143,11 @@ void run_poses(QuerySetup& setup) {
   PoseQueries queries(setup, scene, source.first().pose, output);
   note_scale(setup.program, queries.query());
   source.pass_over(queries.asked());
-  const bool together = a.batch > 1 && !a.bodies;  // a batch leaves no parts of bodies
-  const std::size_t most = together ? a.batch : 1;
-  for (auto poses = source.next(most); !poses.empty(); poses = source.next(most))
-    together ? queries.ask_together(poses) : queries.ask(poses.front());
+  const bool has_states = ask_all(setup, source, queries);
   output.finish();
   note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
-  if (together && !a.spheres_out.empty()) queries.ask_last_again();
+  if (!has_states && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
   if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
   add_levels(stats, queries.query());

@@ -18,7 +18,8 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
     : tool_(tool),
       tool_radius_(tool.radius, options.shadows),
-      level_(tool, level),
+      shared_level_(std::make_shared<const SpatialLevel>(tool, level)),
+      level_(*shared_level_),
       cells_(level_),
       is_coherent_(options.coherent) {}
 

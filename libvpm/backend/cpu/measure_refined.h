@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,6 +31,7 @@ using InsideOf =
 // part of the tool surely counts.
 enum class Until { whole_sum, hit };
 
+// Copies share the level, which is immutable, and measure apart: one for each thread.
 class RefinedMeasure {
  public:
   // Uses the options about coherent poses and occluded space.
@@ -202,7 +204,8 @@ class RefinedMeasure {
 
   const ToolModel& tool_;
   ToolRadius tool_radius_;
-  SpatialLevel level_;
+  std::shared_ptr<const SpatialLevel> shared_level_;
+  const SpatialLevel& level_;
   CellStates cells_;
   bool is_coherent_;
   std::deque<PoseMemory> memories_;  // for each body of the scene, if poses are coherent

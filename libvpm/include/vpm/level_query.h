@@ -78,6 +78,9 @@ class VPM_API LevelQuery {
   LevelQuery(LevelQuery&&) noexcept;
   LevelQuery& operator=(LevelQuery&&) noexcept;
 
+  // Returns a query for another thread, at the levels of this one, as Query::another().
+  LevelQuery another() const;
+
   // Returns the answer of a tool at the level of the moment, and with a deadline chooses the next
   // one from the time that it took. Throws Error(invalid_argument), as all below, if there is no
   // such tool.
@@ -109,6 +112,7 @@ class VPM_API LevelQuery {
 
  private:
   struct Impl;
+  explicit LevelQuery(std::unique_ptr<Impl> impl);
   Impl& impl() const;
 
   std::unique_ptr<Impl> impl_;  // null once moved from
