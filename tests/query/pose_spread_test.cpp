@@ -39,7 +39,7 @@ struct Spread {
             std::this_thread::sleep_for(std::chrono::microseconds(index % 7 == 0 ? 200 : 5));
             for (const std::size_t k : failing)
               if (k == index) throw std::runtime_error(std::to_string(k));
-            AnsweredPose answered{asked, {}, {}, 0};
+            AnsweredPose answered{asked, {}, {}, {}, 0};
             answered.result.volume = 2 * asked.pose.translation.x;
             return answered;
           },
@@ -97,7 +97,7 @@ TEST(PoseSpread, EndsWithPosesThatNobodyWaitsFor) {
         3,
         [&](std::size_t, std::size_t, const AskedPose& asked) {
           ++answered;
-          return AnsweredPose{asked, {}, {}, 0};
+          return AnsweredPose{asked, {}, {}, {}, 0};
         },
         [](const AnsweredPose&) {});
     for (int k = 0; k < 100; ++k) spread.add({});

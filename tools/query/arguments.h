@@ -41,7 +41,7 @@ struct Arguments {
   std::optional<double> deadline_us, stiffness;
   bool for_scene = false, coherent = false, raw_points = false, bodies = false;
   std::string coupling;
-  bool collides = false;
+  bool collides = false, collides_only = false;
   double unseen_limit = kUnseenLimit;
   std::size_t batch = 1;
   bool serve = false, resume = false;

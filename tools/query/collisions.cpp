@@ -20,17 +20,25 @@ std::string named(const nlohmann::ordered_json& line, double limit) {
 
 }  // namespace
 
+const char* text_of(Collides found) {
+  return found == Collides::yes ? "yes" : found == Collides::no ? "no" : "unknown";
+}
+
 void Collisions::answer(const Result& result, nlohmann::ordered_json& line) {
   if (is_asked_) {
     const Collides found = collides(result, unseen_limit_);
-    any_hit_ = any_hit_ || found == Collides::yes;
-    any_unknown_ = any_unknown_ || found == Collides::unknown;
-    line["collides"] = found == Collides::yes ? "yes" : found == Collides::no ? "no" : "unknown";
+    line["collides"] = text_of(found);
+    count(found);
   }
   if (!fail_above_) return;
   const bool is_above = result.volume > *fail_above_;
   line["above"] = is_above;
   if (is_above && count_above_++ < kMostNamed) above_.push_back(named(line, *fail_above_));
+}
+
+void Collisions::count(Collides found) {
+  any_hit_ = any_hit_ || found == Collides::yes;
+  any_unknown_ = any_unknown_ || found == Collides::unknown;
 }
 
 std::vector<std::string> Collisions::above() const {

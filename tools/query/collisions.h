@@ -1,4 +1,5 @@
-// Answers --collides and --fail-above: a field for each line of results, and the exit code of all.
+// Answers --collides, --collides-only and --fail-above: a field for each line of results, and the
+// exit code of all.
 #pragma once
 
 #include <vpm/query_types.h>
@@ -11,6 +12,9 @@
 
 namespace vpm::tools {
 
+// Returns the value of the field.
+const char* text_of(Collides found);
+
 class Collisions {
  public:
   // Tells collisions if they are asked, and volumes above `fail_above`, m^3, if that is given.
@@ -20,7 +24,10 @@ class Collisions {
 
   // Adds the fields `collides` and `above`, if they are asked, to the line of results of one pose.
   void answer(const Result& result, nlohmann::ordered_json& line);
+  // Counts an answer whose line has the field.
+  void count(Collides found);
 
+  double unseen_limit() const { return unseen_limit_; }
   // Returns a sentence for each line above the limit, and for all further ones after twenty.
   std::vector<std::string> above() const;
 

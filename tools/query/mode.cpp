@@ -44,6 +44,7 @@ constexpr Row kTable[] = {
     {"--coherent", {yes, no, yes, yes, no, no, yes, no}},
     {"--collides", {yes, yes, no, yes, yes, yes, yes, no}},
     {"--fail-above", {yes, yes, no, yes, yes, yes, yes, yes}},
+    {"--collides-only", {yes, no, no, no, no, no, no, no}},
     {"--unseen", {yes, yes, no, yes, yes, yes, yes, no}},
     {"--spheres-out", {yes, yes, yes, yes, no, no, no, no}},
     {"--frames", {no, no, no, yes, no, yes, no, no}},
@@ -94,6 +95,11 @@ constexpr Pair kExclusive[] = {
     {"--resume", "--fail-above"},
     {"--collides", "--coupling"},
     {"--fail-above", "--coupling"},
+    {"--collides-only", "--resume"},
+    {"--collides-only", "--bodies"},
+    {"--collides-only", "--spheres-out"},
+    {"--collides-only", "--view"},
+    {"--collides-only", "--fail-above"},
 };
 
 struct Need {
@@ -138,6 +144,11 @@ bool is_given(const CLI::App& app, const char* name) {
   if (option.get_expected_max() == 0) return option.as<bool>();
   if (option.get_expected_min() == 0) return true;  // its default is that of a value left out
   return !is_same_value(option.results().back(), option.get_default_str());
+}
+
+// True if an option that says the same is given.
+bool is_told_by_another(const CLI::App& app, const std::string& name) {
+  return name == "--collides" && is_given(app, "--collides-only");
 }
 
 // Returns the items as "a, b and c" if `last` is "and".
@@ -218,7 +229,7 @@ void check_options(const CLI::App& app, Mode mode) {
   refuse_missing_options(app, mode);
   check_paths(app, mode);
   for (const auto& [option, needed, advice] : kNeeds)
-    if (is_given(app, option) && !is_given(app, needed))
+    if (is_given(app, option) && !is_given(app, needed) && !is_told_by_another(app, needed))
       refuse_usage(std::string(option) + " needs " + needed + ": " + advice);
 }
 

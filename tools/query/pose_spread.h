@@ -10,6 +10,7 @@
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -20,9 +21,10 @@ namespace vpm::tools {
 // A pose with its answer.
 struct AnsweredPose {
   AskedPose asked;
-  Result result;
-  nlohmann::ordered_json line;  // of results
-  double seconds = 0;           // that the answer took
+  Result result;                     // unless only collisions are asked for
+  std::optional<Collides> collides;  // if they are
+  nlohmann::ordered_json line;       // of results
+  double seconds = 0;                // that the answer took
 };
 
 class PoseSpread {

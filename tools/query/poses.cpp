@@ -80,11 +80,24 @@ class PoseQueries {
  private:
   // Asks the `index`-th pose. Threads may do so at once, each with its query.
   AnsweredPose answer(LevelQuery& query, std::size_t index, const AskedPose& asked) const {
+    if (setup_.arguments.collides_only) return hit_of(query, index, asked);
     return answer_of(query, index, asked, query.run(scene_.scene(), asked.pose, 0, asked.solids));
+  }
+  AnsweredPose hit_of(LevelQuery& query, std::size_t index, const AskedPose& asked) const {
+    const Collides found = query.collides(scene_.scene(), asked.pose,
+                                          setup_.collisions.unseen_limit(), 0, asked.solids);
+    return {asked,
+            {},
+            found,
+            collision_line(index, asked.id, text_of(found), query.level(), setup_.options.measure,
+                           query.reason()),
+            query.seconds()};
   }
   AnsweredPose answer_of(const LevelQuery& query, std::size_t index, const AskedPose& asked,
                          const Result& result) const {
-    AnsweredPose answered{asked, result,
+    AnsweredPose answered{asked,
+                          result,
+                          {},
                           result_line(index, asked.id, result, query.level(),
                                       setup_.options.measure, query.reason(), {}),
                           query.seconds()};
@@ -92,8 +105,12 @@ class PoseQueries {
     return answered;
   }
   void write(AnsweredPose answered) {
-    scene_.see(answered.asked.pose, 0, answered.result);
-    setup_.collisions.answer(answered.result, answered.line);
+    if (answered.collides) {
+      setup_.collisions.count(*answered.collides);
+    } else {
+      scene_.see(answered.asked.pose, 0, answered.result);
+      setup_.collisions.answer(answered.result, answered.line);
+    }
     output_.append(answered.line);
     seconds_.push_back(answered.seconds);
     last_result_ = answered.result;

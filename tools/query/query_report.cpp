@@ -31,13 +31,38 @@ const char* text_of(LevelReason reason) {
 
 }  // namespace
 
+namespace {
+
+// Begins the line of a pose, and ends it.
+nlohmann::ordered_json line_of(std::size_t pose_index, const std::string& id) {
+  nlohmann::ordered_json line;
+  line["pose"] = pose_index;
+  if (!id.empty()) line["id"] = nlohmann::ordered_json::parse(id);
+  return line;
+}
+void add_level(nlohmann::ordered_json& line, std::uint32_t level, Measure measure,
+               LevelReason level_reason) {
+  line["level"] = level;
+  line["measure"] = measure == Measure::paper ? "paper" : "refined";
+  if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);
+}
+
+}  // namespace
+
+nlohmann::ordered_json collision_line(std::size_t pose_index, const std::string& id,
+                                      const char* collides, std::uint32_t level, Measure measure,
+                                      LevelReason level_reason) {
+  nlohmann::ordered_json line = line_of(pose_index, id);
+  add_level(line, level, measure, level_reason);
+  line["collides"] = collides;
+  return line;
+}
+
 nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id, const Result& r,
                                    std::uint32_t level, Measure measure, LevelReason level_reason,
                                    const std::optional<StepOfReplay>& replay,
                                    std::optional<std::size_t> tool) {
-  nlohmann::ordered_json line;
-  line["pose"] = pose_index;
-  if (!id.empty()) line["id"] = nlohmann::ordered_json::parse(id);
+  nlohmann::ordered_json line = line_of(pose_index, id);
   if (tool) line["tool"] = *tool;
   if (replay) {
     line["time"] = replay->time;
@@ -56,9 +81,7 @@ nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id
   line["inside"] = r.inside;
   if (r.points) line["points"] = *r.points;
   if (r.closure) line["closure"] = *r.closure;
-  line["level"] = level;
-  line["measure"] = measure == Measure::paper ? "paper" : "refined";
-  if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);
+  add_level(line, level, measure, level_reason);
   return line;
 }
 

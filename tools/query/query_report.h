@@ -36,6 +36,11 @@ nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id
                                    const std::optional<StepOfReplay>& replay,
                                    std::optional<std::size_t> tool = std::nullopt);
 
+// Returns the line of a pose of which only collisions are told.
+nlohmann::ordered_json collision_line(std::size_t pose_index, const std::string& id,
+                                      const char* collides, std::uint32_t level, Measure measure,
+                                      LevelReason level_reason);
+
 // Returns the timings of a run (formats/schemas/query-stats.json), and with a deadline the fraction
 // of the queries that kept it. Times of poses and of the scene's preparation are in seconds.
 nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_seconds,

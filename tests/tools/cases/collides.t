@@ -62,6 +62,24 @@ $ mkdir frames && cp wall.png frames/0.png && vpm-query --tool cube.vpmg --frame
 ['no', 'yes', 'unknown', 'unknown', 'unknown']
 [10]
 
+# Only that, as soon as it is sure: the same answers and exit statuses, in lines that tell nothing else.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --collides-only -o only.jsonl
+[10]
+$ $VALIDATE query-result only.jsonl && head -n 1 only.jsonl && diff <(grep -o '"collides":"[a-z]*"' only.jsonl) <(grep -o '"collides":"[a-z]*"' all.jsonl)
+{"pose":0,"level":100,"measure":"refined","collides":"no"}
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --collides-only --threads 1 --unseen 0.6 -o only.csv; cut -d, -f1,25 only.csv | tail -n 5
+0,no
+1,yes
+2,unknown
+3,no
+4,unknown
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose '0 0 1.4 0 0 0 1' --collides-only --shadows solid | grep -o '"collides":"[a-z]*"'
+"collides":"yes"
+[10]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --collides-only --batch 2
+2> vpm-query: error: --collides-only does not go with poses in batches, chosen by --batch: leave it out
+[2]
+
 # Points without a camera and the measure as printed do not tell what was seen.
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud points.vpmc --pose '0 0 0.7 0 0 0 1' --collides | grep -o '"collides":"[a-z]*"\|seen_free'
