@@ -130,6 +130,10 @@ class PageTest(unittest.TestCase):
         for name, key, size in (("volume", "volume", 1), ("of the tool", "volume_fraction", 100),
                                 ("boundary spheres", "boundary", 1), ("inside spheres", "inside", 1)):
             self.assertAlmostEqual(numbers[name][0], size * result[key], delta=1e-6 * abs(size * result[key]))
+        for name, key in (("seen free", "seen_free"), ("unseen", "unseen"), ("out of view", "out_of_view")):
+            self.assertEqual(name in numbers, key in result)
+            if key in result:
+                self.assertAlmostEqual(numbers[name][0], 100 * result[key], delta=1e-4)
         for shown, true in zip(numbers["force / stiffness"], result["force"]):
             self.assertAlmostEqual(shown, true, delta=1e-6 * abs(true))
 

@@ -196,6 +196,25 @@ std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Ste
   return cameras;
 }
 
+namespace {
+
+// Adds what the camera knows of a tool, if the answers of all steps tell it.
+void add_visibility(view::Page& page, std::span<const Result> answers, std::size_t body) {
+  const auto tells = [](const Result& r) { return r.visibility.has_value(); };
+  if (!std::ranges::all_of(answers, tells)) return;
+  const auto add = [&](const char* name, double Visibility::*part) {
+    view::Column column{name, "%", 1, {}, body};
+    for (const Result& r : answers)
+      column.values.push_back(static_cast<float>(100 * (*r.visibility).*part));
+    page.add_column(column);
+  };
+  add("seen free", &Visibility::seen_free);
+  add("unseen", &Visibility::unseen);
+  add("out of view", &Visibility::out_of_view);
+}
+
+}  // namespace
+
 std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& steps,
                                   std::size_t tool, std::size_t body) const {
   const bool has_stiffness = options_.stiffness != 1;
@@ -211,8 +230,9 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   const auto add = [](view::Column& column, std::initializer_list<double> values) {
     for (const double x : values) column.values.push_back(static_cast<float>(x));
   };
-  for (const Step& step : steps) {
-    const Result& r = step.answers[tool].result;
+  std::vector<Result> answers;
+  for (const Step& step : steps) answers.push_back(step.answers[tool].result);
+  for (const Result& r : answers) {
     add(volume, {r.volume});
     add(fraction, {100 * r.volume_fraction});
     add(force, {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z});
@@ -223,6 +243,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   }
   const std::size_t volume_column = page.add_column(volume);
   page.add_column(fraction);
+  add_visibility(page, answers, body);
   const std::size_t force_column = page.add_column(force);
   const std::size_t torque_column = page.add_column(torque);
   page.add_column(boundary);
