@@ -1,5 +1,6 @@
 #include "libvpm/mesh/gltf_nodes.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -90,27 +91,67 @@ bool name_nodes(json& content) {
   return names_any;
 }
 
+namespace {
+
+// Returns the indices of the nodes of a name, and of all below them.
+std::set<std::uint64_t> at_or_below(const json& nodes, const std::string& name) {
+  std::vector<json> open;
+  for (std::uint64_t k = 0; k < nodes.size(); ++k)
+    if (text_of(member(nodes[k], "name")) == name) open.emplace_back(k);
+  std::set<std::uint64_t> found;
+  while (!open.empty()) {
+    const json index = std::move(open.back());
+    open.pop_back();
+    const json& node = element(nodes, index);
+    if (!node.is_object() || !found.insert(index.get<std::uint64_t>()).second) continue;
+    for (const json& child : member(node, "children")) open.push_back(child);
+  }
+  return found;
+}
+
+constexpr const char* kHidden = " hidden (KHR_node_visibility)";
+
+// Throws Error(refused) if the node called `chosen`, or all that it holds, is hidden, and no other
+// of its name shows a mesh. `lost` has the nodes that were hidden with their meshes.
+void check_chosen(const json& nodes, const std::string& chosen, const Reached& reached,
+                  const std::set<std::uint64_t>& lost, const std::string& file) {
+  bool is_hidden = false, is_shown = false, shows_mesh = false;
+  std::vector<std::string> hidden;
+  for (const std::uint64_t k : at_or_below(nodes, chosen)) {
+    const std::string name = text_of(member(nodes[k], "name"));
+    if (name == chosen) {
+      is_hidden = is_hidden || reached.hidden.contains(k);
+      is_shown = is_shown || reached.shown.contains(k);
+    }
+    if (lost.contains(k)) hidden.push_back(name);
+    shows_mesh = shows_mesh || (reached.shown.contains(k) && !member(nodes[k], "mesh").is_null());
+  }
+  const std::string node = "its node '" + file::shown(chosen) + "'";
+  if (is_hidden && !is_shown) refuse(node + " is" + kHidden, file, kShow);
+  if (!hidden.empty() && !shows_mesh)
+    refuse("all meshes of " + node + " are" + kHidden + ": " + file::listed(hidden), file, kShow);
+}
+
+}  // namespace
+
 std::vector<std::string> hide_nodes(json& content, const std::string& chosen,
                                     const std::string& file) {
   const Reached reached = reached_nodes(content);
   const json& nodes = member(content, "nodes");
-  std::vector<std::string> lost;
-  bool is_chosen = false;
+  std::set<std::uint64_t> lost;
+  std::vector<std::string> names;
   for (const std::uint64_t k : reached.hidden) {
-    const std::string name = text_of(member(nodes[k], "name"));
-    is_chosen = is_chosen || (name == chosen && !chosen.empty());
-    if (content["nodes"][k].erase("mesh") > 0) lost.push_back(name);
+    if (content["nodes"][k].erase("mesh") == 0) continue;
+    lost.insert(k);
+    names.push_back(text_of(member(nodes[k], "name")));
   }
-  bool keeps_mesh = false;
-  for (const std::uint64_t k : reached.shown) {
-    keeps_mesh = keeps_mesh || !member(nodes[k], "mesh").is_null();
-    is_chosen = is_chosen && text_of(member(nodes[k], "name")) != chosen;
-  }
-  const std::string by = std::string(" (") + kVisibility + ")";
-  if (is_chosen) refuse("its node '" + file::shown(chosen) + "' is hidden" + by, file, kShow);
+  if (!chosen.empty()) check_chosen(nodes, chosen, reached, lost, file);
+  const bool keeps_mesh = std::ranges::any_of(
+      reached.shown, [&](std::uint64_t k) { return !member(nodes[k], "mesh").is_null(); });
   if (!lost.empty() && !keeps_mesh)
-    refuse("all of its meshes are hidden" + by + ": " + file::listed(lost), file, kShow);
-  return lost;
+    refuse(std::string("all of its meshes are") + kHidden + ": " + file::listed(names), file,
+           kShow);
+  return names;
 }
 
 }  // namespace vpm

@@ -17,7 +17,8 @@ bool name_nodes(nlohmann::json& content);
 
 // Takes the meshes from the scene's nodes that KHR_node_visibility hides, which hides those below
 // them, too. Returns the names of the nodes that lose one. Throws Error(refused), naming `file`, if
-// no mesh is left, or if the node called `chosen` is hidden and no other has its name.
+// no mesh is left, or if the node called `chosen`, or all that it holds, is hidden and no other of
+// its name is shown.
 std::vector<std::string> hide_nodes(nlohmann::json& content, const std::string& chosen,
                                     const std::string& file);
 

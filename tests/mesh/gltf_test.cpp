@@ -300,6 +300,16 @@ std::string visible(bool is_visible) {
          (is_visible ? "true" : "false") + "}}";
 }
 
+// Returns what is said instead of the node's mesh.
+std::string refusal_of_node(const std::string& content, const std::string& node) {
+  try {
+    node_of(content, node);
+  } catch (const Error& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
 // Hidden nodes are no part of the solid, and neither are those below them, whatever they say.
 TEST(Gltf, HiddenNodesAreLeftOutAndNamed) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
@@ -330,14 +340,17 @@ TEST(Gltf, HiddenNodesAreLeftOutAndNamed) {
       glb("", tree, R"(,{"name":"group")" + std::string(below) + visible(false) + end + lid + end);
   expect_note(parse(group, "a.glb"), "1 node is left out as hidden (KHR_node_visibility): lid");
   for (const std::string name : {"lid", "group"}) {
-    std::string refusal;
-    try {
-      node_of(group, name);
-    } catch (const Error& fault) {
-      refusal = fault.what();
-    }
+    const std::string refusal = refusal_of_node(group, name);
     EXPECT_NE(refusal.find("its node '" + name + "' is hidden"), refusal.npos) << refusal;
   }
+  // So is one that is shown while all that it holds is hidden.
+  const std::string shell =
+      glb("", tree, R"(,{"name":"group")" + std::string(below) + end + lid + visible(false) + end);
+  EXPECT_NE(refusal_of_node(shell, "group")
+                .find("all meshes of its node 'group' are hidden (KHR_node_visibility): lid"),
+            std::string::npos);
+  EXPECT_EQ(node_of(shell, "skin").polygon_count(), 12U);
+  EXPECT_NE(refusal_of_node(shell, "gone").find("it has no node 'gone'"), std::string::npos);
   // Instances and integers, which are made plain before, are hidden alike.
   const std::string hides_and_repeats =
       R"(,"extensions":{"KHR_node_visibility":{"visible":false},"EXT_mesh_gpu_instancing":)"

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -90,31 +91,31 @@ bool is_mesh_file(const std::string& path) {
   return has_mesh_ending(path);
 }
 
-namespace {
-
-Tool packed(const Program& program, const std::string& path, unsigned spheres) {
+Tool tool_of_mesh(const Program& program, const std::string& path) {
   const auto pack_mesh = reinterpret_cast<PackMesh>(function_of_meshes(kPackMesh));
   const MemoryFile model;
   Listener listener{program, path};
   PackingFault fault;
-  if (!pack_mesh(path.c_str(), spheres, program.common().threads, model.path().c_str(), say_of_mesh,
-                 &listener, &fault))
+  if (!pack_mesh(path.c_str(), kSpheres, program.common().threads, model.path().c_str(),
+                 say_of_mesh, &listener, &fault))
     throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
-  return Tool::read(model.path());
-}
-
-}  // namespace
-
-Tool tool_of_mesh(const Program& program, const std::string& path) {
-  Tool tool = packed(program, path, kSpheres);
+  Tool tool = Tool::read(model.path());
   program.note(path + ": packed with " + std::to_string(tool.spheres().size()) +
                " spheres for this run; vpm-pack and vpm-graph make a .vpmg to keep, of other units "
                "and numbers too");
   return tool;
 }
 
-Tool solid_of_mesh(const Program& program, const std::string& path) {
-  return packed(program, path, 1);
+SolidBody solid_of_mesh(const Program& program, const std::string& path) {
+  const auto read_solid = reinterpret_cast<ReadSolid>(function_of_meshes(kReadSolid));
+  reinterpret_cast<UseThreads>(function_of_meshes(kUseThreads))(program.common().threads);
+  const SolidOptions options;
+  Listener listener{program, path};
+  std::optional<SolidBody> solid;
+  PackingFault fault;
+  if (!read_solid(path.c_str(), &options, true, say_of_mesh, &listener, &solid, &fault))
+    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
+  return *solid;
 }
 
 }  // namespace vpm::tools

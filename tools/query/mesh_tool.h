@@ -1,6 +1,7 @@
 // Tools of meshes, packed with spheres and built in memory.
 #pragma once
 
+#include <vpm/solid.h>
 #include <vpm/tool.h>
 
 #include <string>
@@ -25,8 +26,7 @@ void* function_of_meshes(const char* name);
 // where they are not built.
 Tool tool_of_mesh(const Program& program, const std::string& path);
 
-// Returns a model of a mesh for the surface that it keeps, with one sphere. Says and throws the
-// same.
-Tool solid_of_mesh(const Program& program, const std::string& path);
+// Returns the solid of a mesh, prepared with what forces need. Says and throws the same.
+SolidBody solid_of_mesh(const Program& program, const std::string& path);
 
 }  // namespace vpm::tools

@@ -14,6 +14,18 @@
 #include "tools/query/mesh_tool.h"
 
 namespace vpm::tools {
+namespace {
+
+SolidBody solid_of_model(const std::string& name) {
+  const Tool model = Tool::read(name);
+  try {
+    return SolidBody(model);
+  } catch (const Error& error) {
+    throw Error(error.kind(), error.problem(), name, error.hint());
+  }
+}
+
+}  // namespace
 
 SolidArgument solid_from_text(const std::string& text) {
   std::error_code fault;
@@ -27,12 +39,9 @@ std::vector<Body> read_solids(const Program& program, const std::vector<std::str
   std::vector<Body> solids;
   for (const std::string& text : texts) {
     const auto [name, at] = solid_from_text(text);
-    const Tool model = is_mesh_file(name) ? solid_of_mesh(program, name) : Tool::read(name);
-    try {
-      solids.emplace_back(SolidBody(model), at);
-    } catch (const Error& error) {
-      throw Error(error.kind(), error.problem(), name, error.hint());
-    }
+    const SolidBody solid =
+        is_mesh_file(name) ? solid_of_mesh(program, name) : solid_of_model(name);
+    solids.emplace_back(solid, at);
   }
   return solids;
 }
