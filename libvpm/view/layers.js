@@ -30,8 +30,9 @@ function placed(object, order) {
 
 // A body moves as a whole: its group has the pose of the step.
 class Body {
-  constructor({name, radius, center, poses}) {
+  constructor({name, radius, center, is_tool: isTool, poses}) {
     this.name = name;
+    this.isTool = isTool;
     this.radius = radius;
     this.center = new THREE.Vector3(...center);
     this.poses = decode(poses);

@@ -115,6 +115,7 @@ window.vpm = {
       title: doc.title, step, steps: steps.count, where: stepText(), faults,
       firstPicture: stage.firstPicture, bySoftware: stage.bySoftware, load: stage.load(),
       layers: layers.map(({name, type, count, on, counts, object}) => ({name, type, count, on, counts, visible: object.visible})),
+      bodies: bodies.map(body => ({name: body.name, center: body.centerAt(step).toArray()})),
       numbers: columns.map(c => ({name: c.name, body: c.body, values: [...c.values.slice(c.size * step, c.size * step + c.size)]})),
       texts: [...document.querySelectorAll('#numbers tr')].map(row => row.textContent),
       cell: cells && cells.report(),

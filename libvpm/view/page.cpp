@@ -129,7 +129,7 @@ Vec3 Page::place(Vec3 world) {
 }
 
 std::size_t Page::add_body(const std::string& name, Vec3 center, double radius,
-                           std::span<const Pose> poses) {
+                           std::span<const Pose> poses, bool is_tool) {
   std::vector<float> numbers;
   for (const Pose& pose : poses) {
     append(numbers, pose, origin_);
@@ -140,6 +140,7 @@ std::size_t Page::add_body(const std::string& name, Vec3 center, double radius,
   bodies_.push_back({{"name", name},
                      {"center", as_json(center)},
                      {"radius", radius},
+                     {"is_tool", is_tool},
                      {"poses", packed(std::span<const float>(numbers))}});
   return bodies_.size() - 1;
 }

@@ -100,9 +100,10 @@ class Page {
   void add_note(const std::string& text);
 
   // Adds a body and returns its number. `center` is its centre of mass in its own coordinates;
-  // `poses` map them to the world, one per step.
+  // `poses` map them to the world, one per step, or one for all. Points of view look at the tools,
+  // which come first, and not at the bodies of the scene.
   std::size_t add_body(const std::string& name, Vec3 center, double radius,
-                       std::span<const Pose> poses);
+                       std::span<const Pose> poses, bool is_tool = true);
   std::size_t add_column(const Column& column);
 
   // Adds images. `of_step` says which one each step shows; empty: the first. Pixels of the images,

@@ -38,8 +38,9 @@ function showFacts(doc) {
 function showNumbers(doc, bodies, columns) {
   if (!columns.length) return () => {};
   const place = section('numbers'), cells = [];
-  for (const body of [...new Set(columns.map(column => column.body))]) {
-    const title = bodies.length > 1 && body >= 0 ? bodies[body].name : 'Numbers', table = element('table', {});
+  const told = [...new Set(columns.map(column => column.body))];
+  for (const body of told) {
+    const title = told.length > 1 && body >= 0 ? bodies[body].name : 'Numbers', table = element('table', {});
     place.append(element('h2', {textContent: title}), table);
     columns.filter(column => column.body === body).forEach((column, k) => {
       const cell = element('td', {className: k === 0 ? 'big' : ''});

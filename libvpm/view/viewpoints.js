@@ -43,7 +43,8 @@ function ballOfImage({eye, ahead, image}) {
 }
 
 // Returns {name: function that looks from there}.
-function makeViewpoints(stage, layers, bodies, moves) {
+function makeViewpoints(stage, layers, allBodies, moves) {
+  const bodies = allBodies.filter(body => body.isTool);
   const {camera, controls, extent} = stage, surface = layers.find(layer => layer.type === 'surface');
   const frame = () => frameOfView(stage, surface);
   const focus = () => bodies.length ? ballAround(bodies.map(body => body.ball())) : surface ? ballOfImage(frame()) : extent;

@@ -248,6 +248,24 @@ class Query(PageTest):
         self.assertIn("<script>alert(1)<_script>", page.evaluate("document.getElementById('title').textContent"))
         self.assertEqual(page.evaluate("document.querySelectorAll('h1 script, td script, span script').length"), 0)
 
+    def test_solids_of_the_scene_move_with_the_steps(self):
+        (FOLDER / "moves.jsonl").write_text("".join(
+            json.dumps({"tool": [0, 0, 1, 0, 0, 0, 1], "solids": [[x, 0, 1, 0, 0, 0, 1]]}) + "\n" for x in (0.3, 0.02)))
+        run("vpm-query", "--tool", "tool.vpmg", "--solid", "tool.off", "--poses", "moves.jsonl", "-o", "moves.out",
+            "--view", "moves.html", "--quiet")
+        page, lines = self.open("moves.html"), results("moves.out")
+        self.assertEqual(self.layer(page, "solid tool.off")["count"], self.layer(page, "tool's mesh")["count"])
+        places = []
+        for step in (0, 1):
+            page.evaluate(f"vpm.setStep({step})")
+            self.assert_shows(page, lines[step])
+            places.append(page.report()["bodies"][1]["center"])
+        self.assertAlmostEqual(places[0][0] - places[1][0], 0.28, delta=1e-6)
+        blue = lambda r, g, b: (b > 1.1 * r) & (b > g) & (b > 0.25)
+        shown = share(scene(page), blue)
+        page.evaluate("vpm.setLayer('solid tool.off', false)")
+        self.assertGreater(shown, share(scene(page), blue) + 0.003)
+
     def test_several_tools(self):
         run("vpm-query", "--tool", "tool.vpmg", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses",
             "poses.jsonl", "--batch", 50, "-o", "two.jsonl", "--view", "two.html")

@@ -43,10 +43,10 @@ void CloudScene::warn_at_end() const {
   if (check_ && !has_said_) say(setup_.program, check_->remarks());
 }
 
-std::vector<Pose> poses_of(const std::vector<AskedPose>& asked) {
-  std::vector<Pose> poses;
-  for (const AskedPose& one : asked) poses.push_back(one.pose);
-  return poses;
+std::vector<Job> jobs_of(const std::vector<AskedPose>& asked) {
+  std::vector<Job> jobs;
+  for (const AskedPose& one : asked) jobs.push_back({one.pose, 0, one.solids});
+  return jobs;
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {

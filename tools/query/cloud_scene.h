@@ -46,8 +46,8 @@ class CloudScene {
   double prepare_seconds_ = 0;
 };
 
-// Returns the poses alone.
-std::vector<Pose> poses_of(const std::vector<AskedPose>& asked);
+// Returns the job of each pose for the first tool, which refers to what was asked.
+std::vector<Job> jobs_of(const std::vector<AskedPose>& asked);
 
 // Pose of --pose, or those of --poses.
 class PoseSource {

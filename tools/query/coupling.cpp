@@ -86,10 +86,11 @@ CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelQuery&
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
-    step.contact = query.run(scene.scene(), step.tool, 0, path.solids(k));
+    const std::vector<Pose> solids = path.solids(k);
+    step.contact = query.run(scene.scene(), step.tool, 0, solids);
     scene.see(step.tool, 0, step.contact);
     run.seconds.push_back(query.seconds());
-    if (view) view->add(0, step.tool, step.contact, query);
+    if (view) view->add({step.tool, 0, solids}, step.contact, query);
     step.rendered = coupling.advance(step.device, step.contact.wrench);
     step.energy = coupling.energy();
     output.append(coupled_line(step, ""));

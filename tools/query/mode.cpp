@@ -87,7 +87,6 @@ constexpr Pair kExclusive[] = {
     {"--level", "--deadline-us"},
     {"--coherent", "--deadline-us"},
     {"--camera-pose", "--camera-poses"},
-    {"--solid", "--view"},
     {"--resume", "--deadline-us"},
     {"--resume", "--spheres-out"},
     {"--resume", "--view"},

@@ -7,6 +7,7 @@
 #include "libvpm/api/handle_access.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/view/pose_path.h"
@@ -59,7 +60,8 @@ PoseView::PoseView(std::string path, std::span<const Tool> tools, std::vector<st
   view::check_available();
   for (const Tool& tool : tools) models_.push_back(&HandleAccess::held(tool));
   for (std::string& name : names_) {
-    meshes_.push_back(name == "-" || is_mesh_file(name) ? Solid{} : read_display_mesh(name));
+    const bool is_model = name != "-" && !is_mesh_file(name);
+    meshes_.push_back(is_model ? read_display_mesh(name) : models_[meshes_.size()]->surface);
     name = view::shown_name(name);
   }
   std::size_t row = 0;
@@ -78,25 +80,26 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
   import_ = options;
 }
 
-void PoseView::add(std::size_t tool, const Pose& pose, const Result& result,
-                   const LevelQuery& query) {
-  Answer answer{pose, result, {}};
+void PoseView::add(const Job& job, const Result& result, const LevelQuery& query) {
+  const std::size_t tool = job.tool;
+  Answer answer{job.pose, result, {}};
   for (const SphereState state : query.states(tool))
     answer.states.push_back(static_cast<std::uint8_t>(state));
   levels_[tool] = std::max(levels_[tool], query.level(tool));
-  if (tool == 0) current_ = {seen_, frame_, {}};
+  if (tool == 0) current_ = {seen_, frame_, {job.solids.begin(), job.solids.end()}, {}};
   current_.answers.push_back(std::move(answer));
   if (tool + 1 == models_.size()) keep(std::move(current_));
 }
 
-void PoseView::add_batch(LevelQuery& query, const Scene& scene, std::span<const Pose> poses) {
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (!keeps_next() && k + 1 < poses.size()) {
+void PoseView::add_batch(LevelQuery& query, const Scene& scene, std::span<const Job> jobs) {
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    if (!keeps_next() && k + 1 < jobs.size()) {
       ++seen_;
       continue;
     }
-    for (std::size_t t = 0; t < models_.size(); ++t)
-      add(t, poses[k], query.run(scene, poses[k], t), query);
+    Job job = jobs[k];
+    for (job.tool = 0; job.tool < models_.size(); ++job.tool)
+      add(job, query.run(scene, job.pose, job.tool, job.solids), query);
   }
 }
 
@@ -132,6 +135,7 @@ void PoseView::add_facts(view::Page& page) const {
   }
   for (const auto& [name, cloud] : clouds_)
     page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance.json()));
+  for (const std::string& name : solids_.names()) page.add_fact("solid", name);
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
@@ -152,6 +156,9 @@ std::vector<Camera> PoseView::add_scene(view::Page& page, const std::vector<Step
       page.add_points("measured points" + of, cloud);
     }
   }
+  std::vector<std::vector<Pose>> poses_of_solids;
+  for (const Step& step : steps) poses_of_solids.push_back(step.solids);
+  solids_.add_to(page, poses_of_solids);
   return recording_ != nullptr ? add_frames(page, steps) : std::vector<Camera>();
 }
 
@@ -317,13 +324,21 @@ void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
   if (!touches) page.add_note("The tool touches nothing at any pose: the volume is 0 everywhere.");
 }
 
+// Names the tools and what they are in.
+std::string PoseView::title() const {
+  std::string title = names_[0];
+  for (std::size_t t = 1; t < names_.size(); ++t) title += ", " + names_[t];
+  std::vector<std::string> scene;
+  for (const auto& [name, cloud] : clouds_) scene.push_back(name);
+  if (recording_ != nullptr) scene.push_back(recording_name_);
+  for (const std::string& name : solids_.names()) scene.push_back(name);
+  return title + " in " + file::listed(scene);
+}
+
 void PoseView::write() const {
   const std::vector<Step> steps = kept();
   if (steps.empty()) refuse("--view " + path_ + ": there is no pose to show");
-  std::string title = names_[0];
-  for (std::size_t t = 1; t < names_.size(); ++t) title += ", " + names_[t];
-  title += " in " + (clouds_.empty() ? recording_name_ : clouds_.front().first);
-  view::Page page("vpm-query", title);
+  view::Page page("vpm-query", title());
   page.set_origin(clouds_.empty() ? steps.front().answers[0].pose.translation
                                   : HandleAccess::held(clouds_.front().second).origin);
   for (const auto& [name, cloud] : clouds_)
@@ -358,7 +373,10 @@ void PoseView::write() const {
                     {"every", every_},
                     {"columns", volumes},
                     {"names", names_}});
-  page.set_views({"overview", "camera", "side", "contact", "all"});
+  const bool has_images = recording_ != nullptr || !clouds_.empty();
+  page.set_views(has_images
+                     ? std::vector<std::string>{"overview", "camera", "side", "contact", "all"}
+                     : std::vector<std::string>{"overview", "side", "contact", "all"});
   page.write(path_);
 }
 

@@ -17,6 +17,7 @@
 #include "libvpm/model/solid.h"
 #include "libvpm/recording/recording.h"
 #include "libvpm/view/page.h"
+#include "tools/query/shown_solids.h"
 
 namespace vpm::tools {
 
@@ -31,15 +32,19 @@ class PoseView {
 
   // Adds a cloud to the scene of all poses.
   void add_cloud(const std::string& name, const PointCloud& cloud);
+  // Adds a solid, of that file, to the scene of all poses.
+  void add_solid(const std::string& name, const Body& body) { solids_.add(name, body); }
   // Makes the frames of a recording the scene. The recording must outlive this.
   void set_frames(const std::string& name, const Recording& recording,
                   const ImportOptions& options);
 
-  // Adds the answer of the tool's query to its last pose. Expects the tools in their order.
-  void add(std::size_t tool, const Pose& pose, const Result& result, const LevelQuery& query);
-  // Adds poses that were answered together. Queries those that are kept, and the last one, again,
-  // since a batch leaves no states of spheres.
-  void add_batch(LevelQuery& query, const Scene& scene, std::span<const Pose> poses);
+  // Adds the answer of the query to its last pose, that of the job's tool, with the solids where
+  // the job has them. Expects the tools in their order.
+  void add(const Job& job, const Result& result, const LevelQuery& query);
+  // Adds jobs of the first tool that were answered together, and the same of the other tools.
+  // Queries those that are kept, and the last one, again, since a batch leaves no states of
+  // spheres.
+  void add_batch(LevelQuery& query, const Scene& scene, std::span<const Job> jobs);
   // Sets the frame of the recording that the next steps see.
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }
 
@@ -55,6 +60,7 @@ class PoseView {
   struct Step {
     std::size_t index = 0;
     std::optional<std::size_t> frame;
+    std::vector<Pose> solids;     // none: where they were made
     std::vector<Answer> answers;  // one per tool
   };
 
@@ -71,6 +77,7 @@ class PoseView {
                        bool is_joined) const;
   std::size_t add_numbers(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
                           std::size_t body) const;
+  std::string title() const;
   void say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
                        const std::vector<Camera>& frame_cameras) const;
 
@@ -80,6 +87,7 @@ class PoseView {
   std::vector<Solid> meshes_;  // empty where a model came by a pipe or keeps none
   QueryOptions options_;
   std::vector<std::pair<std::string, PointCloud>> clouds_;
+  ShownSolids solids_;
   std::string recording_name_;
   const Recording* recording_ = nullptr;
   ImportOptions import_;

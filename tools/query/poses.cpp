@@ -15,13 +15,6 @@
 namespace vpm::tools {
 namespace {
 
-// Returns the job of each pose for a single tool.
-std::vector<Job> jobs_of(const std::vector<AskedPose>& asked) {
-  std::vector<Job> jobs;
-  for (const AskedPose& one : asked) jobs.push_back({one.pose, 0, one.solids});
-  return jobs;
-}
-
 // Queries of one tool and the lines of their results.
 class PoseQueries {
  public:
@@ -34,15 +27,16 @@ class PoseQueries {
 
   void ask(const AskedPose& asked) {
     write(answer(query_, asked_, asked));
-    if (setup_.view) setup_.view->add(0, asked.pose, last_result_, query_);
+    if (setup_.view) setup_.view->add({asked.pose, 0, asked.solids}, last_result_, query_);
   }
 
   void ask_together(const std::vector<AskedPose>& asked) {
     std::vector<Result> results(asked.size());
-    query_.run(scene_.scene(), jobs_of(asked), results);
+    const std::vector<Job> jobs = jobs_of(asked);
+    query_.run(scene_.scene(), jobs, results);
     for (std::size_t k = 0; k < asked.size(); ++k)
       write(answer_of(query_, asked_, asked[k], results[k]));
-    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses_of(asked));
+    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), jobs);
   }
 
   // Asks all poses by several threads, each for poses of its own.

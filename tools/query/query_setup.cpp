@@ -84,7 +84,10 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
       collisions(a.collides, a.unseen_limit, a.fail_above) {
   if (!solids.empty()) check_surfaces(tools, a.tools);
   options = query_options(program, a);
-  if (!a.view.empty()) view.emplace(a.view, tools, a.tools, options);
+  if (a.view.empty()) return;
+  view.emplace(a.view, tools, a.tools, options);
+  for (std::size_t k = 0; k < solids.size(); ++k)
+    view->add_solid(solid_from_text(a.solids[k]).name, solids[k]);
 }
 
 void say(const Program& program, const Remarks& remarks) {

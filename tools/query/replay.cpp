@@ -228,16 +228,18 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
                   Collisions& collisions, ResultOutput& output,
                   std::optional<PoseView>& view) const {
   if (view) view->see_frame(feed_->frame());
+  const std::vector<Pose> solids = paths_.solids(now_.front().step);
   for (std::size_t tool = 0; tool < now_.size(); ++tool) {
     const CoupledStep& step = now_[tool];
-    if (view) view->add(tool, step.tool, step.contact, query);
+    const auto index = static_cast<std::uint32_t>(tool);
+    if (view) view->add({step.tool, index, solids}, step.contact, query);
     if (feed_->frame() && solids_.empty())
       check.see(step.tool, tool, step.contact, *feed_->frame());
-    const auto index = tools_ > 1 ? std::optional(tool) : std::nullopt;
+    const auto told = tools_ > 1 ? std::optional(tool) : std::nullopt;
     nlohmann::ordered_json line =
         are_coupled ? coupled_line(step, frame_name())
                     : result_line(step.step, {}, step.contact, query.level(tool), measure,
-                                  query.reason(tool), StepOfReplay{step.time, frame_name()}, index);
+                                  query.reason(tool), StepOfReplay{step.time, frame_name()}, told);
     collisions.answer(step.contact, line);
     output.append(line);
   }

@@ -27,19 +27,18 @@ class SeveralTools {
 
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
   void ask(const std::vector<AskedPose>& asked, ResultOutput& output) {
-    const std::vector<Pose> poses = poses_of(asked);
     const std::vector<Result> results = timed_results(asked);
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools_;
-      scene_.see(poses[k / tools_], tool, results[k]);
+      scene_.see(asked[k / tools_].pose, tool, results[k]);
       nlohmann::ordered_json line =
           result_line(poses_asked_ + k / tools_, asked[k / tools_].id, results[k],
                       query_.level(tool), setup_.options.measure, query_.reason(tool), {}, tool);
       setup_.collisions.answer(results[k], line);
       output.append(line);
     }
-    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), poses);
-    poses_asked_ += poses.size();
+    if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), jobs_of(asked));
+    poses_asked_ += asked.size();
   }
 
   std::size_t asked() const { return poses_asked_; }

@@ -69,9 +69,6 @@ $ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --measure pa
 $ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --for-scene
 2> vpm-query: error: a level by scene or deadline is chosen by points, and the scene has solids only; leave that choice out, or add a cloud
 [2]
-$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --view v.html
-2> vpm-query: error: --solid and --view exclude each other: leave one of them out
-[2]
 $ vpm-query --tool cube.vpmg --solid - --pose 0,0,0,0,0,0,1
 2> vpm-query: error: --solid is a file: standard input holds none
 [2]
@@ -98,6 +95,34 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.jsonl --coupling sti
 $ vpm-query --tool cube.vpmg --frames frames --poses path.jsonl --camera-poses path.jsonl --quiet
 2> vpm-query: error: path.jsonl: "solids" has 1 pose, but --solid is given 0 times; give one for each, or leave "solids" out
 [1]
+
+# A page has each solid at its poses: where it was made at those that leave the solids where they are, or once if none moves any.
+$ vpm-query --tool cube.vpmg --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl --view moves.html --quiet | cmp - moved.jsonl && python3 $SOURCE/tests/tools/page_bodies.py moves.html
+cube.vpmg in cube.vpmg, cube.off | overview side contact all
+tool's mesh, solid cube.vpmg, solid cube.off
+tool cube.vpmg [0.0, 0.0, 0.0] [0.0, 0.0, 0.0] [0.0, 0.0, 0.0]
+solid cube.vpmg [0.15, 0.0, 0.0] [0.0, 0.0, 0.19] [0.18, 0.0, 0.0]
+solid cube.off [0.0, 0.1, 0.0] [9.0, 9.0, 9.0] [0.0, 0.0, 9.0]
+$ for more in "--batch 2" "--tool cube.off"; do vpm-query --tool cube.vpmg $more --solid cube.vpmg@0,0,0.19,0,0,0,1 --solid cube.off@9,9,9,0,0,0,1 --poses moves.jsonl --view more.html --force --quiet > /dev/null && python3 $SOURCE/tests/tools/page_bodies.py more.html | tail -n 2; done
+solid cube.vpmg [0.15, 0.0, 0.0] [0.0, 0.0, 0.19] [0.18, 0.0, 0.0]
+solid cube.off [0.0, 0.1, 0.0] [9.0, 9.0, 9.0] [0.0, 0.0, 9.0]
+solid cube.vpmg [0.15, 0.0, 0.0] [0.0, 0.0, 0.19] [0.18, 0.0, 0.0]
+solid cube.off [0.0, 0.1, 0.0] [9.0, 9.0, 9.0] [0.0, 0.0, 9.0]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --solid cube.vpmg@0.5,0,0.9,0,0,0,1 --pose 0.4,0,0.9,0,0,0,1 --view mixed.html --quiet > /dev/null && python3 $SOURCE/tests/tools/page_bodies.py mixed.html
+cube.vpmg in wall.vpmc, cube.vpmg | overview camera side contact all
+tool's mesh, solid cube.vpmg
+tool cube.vpmg [0.4, 0.0, 0.9]
+solid cube.vpmg [0.5, 0.0, 0.9]
+$ vpm-query --tool cube.vpmg --solid cube.off --frames frames --poses path.jsonl --view frames.html --quiet > /dev/null && python3 $SOURCE/tests/tools/page_bodies.py frames.html | cut -c 1-60
+cube.vpmg in frames, cube.off | overview camera side contact
+tool's mesh, solid cube.off
+tool cube.vpmg [0.0, 0.0, 0.0] [0.0, 0.0, 0.0] [0.0, 0.0, 0.
+solid cube.off [0.19, 0.0, 0.0] [0.189, 0.0, 0.0] [0.188, 0.
+$ vpm-query --tool cube.vpmg --solid cube.off --poses path.jsonl --coupling stiffness=500,damping=5 --stiffness 2e4 --view coupled.html --quiet > /dev/null && python3 $SOURCE/tests/tools/page_bodies.py coupled.html | cut -c 1-60
+cube.vpmg in cube.off | overview side contact all
+tool's mesh, solid cube.off
+tool cube.vpmg [0.0, 0.0, 0.0] [0.0, 0.0, 0.0] [-0.001, 0.0,
+solid cube.off [0.19, 0.0, 0.0] [0.189, 0.0, 0.0] [0.188, 0.
 
 # Bodies of batches are those of single poses.
 $ vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies > one.jsonl && vpm-query --tool cube.vpmg --solid cube.vpmg --solid cube.off --poses moves.jsonl --bodies --batch 2 | cmp - one.jsonl
