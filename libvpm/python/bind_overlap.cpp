@@ -19,6 +19,13 @@ void bind_body(py::module_& module) {
            py::arg("solid"), py::kw_only(), py::arg("with_force") = true,
            "Prepares a vpm.SolidMesh: 0.2 s for 7000 triangles; with_force False leaves out what "
            "forces need, which is most of that. Raises RefusedError for a mesh without volume.")
+      .def(py::init([](const Tool& tool, bool with_force) {
+             const py::gil_scoped_release unlocked;
+             return SolidBody(tool, with_force);
+           }),
+           py::arg("tool"), py::kw_only(), py::arg("with_force") = true,
+           "Prepares the surface that a vpm.Tool keeps, in the frame of its mesh. Raises "
+           "RefusedError for a tool that keeps none.")
       .def_property_readonly("volume", &SolidBody::volume, "Volume, m^3.")
       .def_property_readonly(
           "center_of_mass", [](const SolidBody& body) { return array_of(body.center_of_mass()); },

@@ -7,6 +7,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "libvpm/python/arrays.h"
 #include "libvpm/python/locked.h"
@@ -67,7 +70,16 @@ py::array fractions_of(const Results& results, double Visibility::*member) {
   for (const Result& result : results.answers) *out++ = fraction_of(result, member).value_or(kNone);
   return fractions;
 }
-// The same for a vector of the wrench: shape (N, 3).
+// Returns the closures of all results as a new array, with NaN for None.
+py::array closures_of(const Results& results) {
+  py::array_t<double> closures(static_cast<py::ssize_t>(results.answers.size()));
+  double* out = closures.mutable_data();
+  for (const Result& result : results.answers)
+    *out++ = result.closure.value_or(std::numeric_limits<double>::quiet_NaN());
+  return closures;
+}
+// Returns a vector of the wrench of all results as an array of shape (N, 3), which shares their
+// memory.
 py::array column_of(const py::object& owner, const Vec3 Wrench::*member) {
   const auto& answers = owner.cast<const Results&>().answers;
   const double* const first = answers.empty() ? nullptr : &(answers.front().wrench.*member).x;
@@ -106,6 +118,10 @@ void bind_results(py::module_& module) {
       .def_readonly("inside", &Result::inside, "Number of spheres behind the surface that count.")
       .def_readonly("points", &Result::points,
                     "Number of points of the scene inside spheres; None but for the paper measure.")
+      .def_readonly("closure", &Result::closure,
+                    "In a scene with solids: how far the boundary of what is shared is from "
+                    "closed, relative to the smaller radius, below 1e-8; the largest of all "
+                    "solids. None without solids.")
       .def("__repr__", [](const Result& result) {
         const Vec3 f = result.wrench.force;
         return py::str(
@@ -148,13 +164,41 @@ void bind_results(py::module_& module) {
           "Array (N,) of spheres that the surface cuts.")
       .def_property_readonly(
           "inside", [](const py::object& self) { return column_of(self, &Result::inside); },
-          "Array (N,) of spheres behind the surface that count.");
+          "Array (N,) of spheres behind the surface that count.")
+      .def_property_readonly("closure", &closures_of, "Array (N,), NaN where a Result has None.");
 }
 
-std::vector<Job> jobs_of(const Numbers& numbers, const py::object& tool) {
+// Returns the poses of `solids`, of all of a scene at one pose of the tool; none for None.
+std::vector<Pose> poses_of_solids(const py::object& solids) {
+  if (solids.is_none()) return {};
+  std::vector<Pose> poses = poses_of(Numbers(solids));
+  if (poses.empty()) reject("`solids` has no pose", "leave it out, or give one of each solid");
+  return poses;
+}
+
+// Returns the poses of all solids at N poses of the tool, one after another: N x S x 7 numbers, or
+// N x S matrices.
+std::vector<Pose> poses_of_moving_solids(const py::object& solids, std::size_t poses) {
+  if (solids.is_none()) return {};
+  Numbers numbers(solids);
+  if (numbers.ndim() < 3 || numbers.shape(0) != static_cast<py::ssize_t>(poses) ||
+      numbers.shape(1) == 0)
+    reject(
+        "`solids` must have the shape (N, S, 7) or (N, S, 4, 4): for each pose one of each "
+        "solid");
+  std::vector<py::ssize_t> shape(numbers.shape() + 1, numbers.shape() + numbers.ndim());
+  shape[0] *= numbers.shape(0);
+  return poses_of(numbers.reshape(shape));
+}
+
+// Returns the jobs, which refer to the poses of the solids.
+std::vector<Job> jobs_of(const Numbers& numbers, const py::object& tool,
+                         std::span<const Pose> solids) {
   const std::vector<Pose> poses = poses_of(numbers);
   std::vector<Job> jobs(poses.size());
-  for (std::size_t k = 0; k < jobs.size(); ++k) jobs[k].pose = poses[k];
+  const std::size_t moving = jobs.empty() ? 0 : solids.size() / jobs.size();
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    jobs[k] = {poses[k], 0, solids.subspan(k * moving, moving)};
   if (tool.is_none()) return jobs;
   using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
   const Indices tools(tool);
@@ -201,18 +245,31 @@ void bind_single_query(py::module_& module) {
            "UnavailableError if the device is not there.")
       .def(
           "run",
-          [](LockedQuery& self, const Scene& scene, const Numbers& pose) {
+          [](LockedQuery& self, const Scene& scene, const Numbers& pose, const py::object& solids) {
             const Pose at = pose_of(pose);
-            return self.ask([&](Query& query) { return query.run(scene, at); });
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return self.ask([&](Query& query) { return query.run(scene, at, moved); });
           },
-          py::arg("scene"), py::arg("pose"),
+          py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
           "Returns the vpm.Result of the first tool at a pose: 7 numbers tx ty tz qx qy qz qw, or "
-          "a matrix (4, 4) or (3, 4); tool to world, m. Raises RefusedError for a pose that is not "
-          "finite or not rigid.")
+          "a matrix (4, 4) or (3, 4); tool to world, m.\n\nsolids: (S, 7) or (S, 4, 4), a pose "
+          "for each solid of the scene in the order of its bodies, mesh to world; without, they "
+          "are where they were made.\n\nRaises RefusedError for a pose that is not finite or not "
+          "rigid, for a tool that keeps no surface in a scene with solids, and where the boundary "
+          "of what is shared does not close; ArgumentError for another number of poses than of "
+          "solids.")
+      .def(
+          "parts",
+          [](LockedQuery& self) { return self.ask([](Query& query) { return query.parts(); }); },
+          "Returns a list with the vpm.Result that each body gave at the last single pose, in the "
+          "order of the scene's bodies. Their volumes, forces and torques add up to the answer.")
       .def(
           "run_batch",
-          [](LockedQuery& self, const Scene& scene, const Numbers& poses, const py::object& tool) {
-            const std::vector<Job> jobs = jobs_of(poses, tool);
+          [](LockedQuery& self, const Scene& scene, const Numbers& poses, const py::object& tool,
+             const py::object& solids) {
+            const auto count = static_cast<std::size_t>(poses.ndim() > 0 ? poses.shape(0) : 0);
+            const std::vector<Pose> moved = poses_of_moving_solids(solids, count);
+            const std::vector<Job> jobs = jobs_of(poses, tool, moved);
             return self.ask([&](Query& query) {
               Results results{std::vector<Result>(jobs.size())};
               query.run(scene, jobs, results.answers);
@@ -220,8 +277,11 @@ void bind_single_query(py::module_& module) {
             });
           },
           py::arg("scene"), py::arg("poses"), py::arg("tool") = py::none(),
+          py::arg("solids") = py::none(),
           "Returns the vpm.Results of N poses, (N, 7), (N, 4, 4) or (N, 3, 4); the bits of run() "
-          "one by one.\n\ntool: (N,) index of each pose's tool; without, all are of the first.")
+          "one by one.\n\ntool: (N,) index of each pose's tool; without, all are of the "
+          "first.\nsolids: (N, S, 7) or (N, S, 4, 4), for each pose one of each of the scene's S "
+          "solids.")
       .def(
           "forget", [](LockedQuery& self) { self.ask([](Query& query) { query.forget(); }); },
           "Ends a motion of coherent poses.")
@@ -287,11 +347,13 @@ void bind_level_query(py::module_& module) {
            "no calibration or no such level.")
       .def(
           "run",
-          [](LockedQuery& self, const Scene& scene, const Numbers& pose) {
+          [](LockedQuery& self, const Scene& scene, const Numbers& pose, const py::object& solids) {
             const Pose at = pose_of(pose);
-            return self.ask([&](LevelQuery& query) { return query.run(scene, at); });
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return self.ask([&](LevelQuery& query) { return query.run(scene, at, 0, moved); });
           },
-          py::arg("scene"), py::arg("pose"), "Returns the vpm.Result at the level of the moment.")
+          py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
+          "Returns the vpm.Result at the level of the moment. solids: as for vpm.Query.run.")
       .def_property_readonly(
           "level", [](LockedQuery& self) { return self.ask([](auto& q) { return q.level(); }); },
           "Number of spheres of the level last used.")

@@ -4,6 +4,7 @@
 #include <vpm/depth_stream.h>
 #include <vpm/import.h>
 #include <vpm/scene.h>
+#include <vpm/solid.h>
 
 #include "libvpm/python/arrays.h"
 
@@ -153,8 +154,16 @@ void bind_body(py::module_& module) {
            py::arg("cloud"), py::kw_only(), py::arg("denoising") = true,
            "Prepares a cloud for queries: a millisecond for a depth image, a second for as many "
            "points without a camera. denoising: frees points of most of their noise.")
+      .def(py::init([](const SolidBody& solid, const py::object& to_world) {
+             return Body(solid, to_world.is_none() ? Pose{} : pose_of(Numbers(to_world)));
+           }),
+           py::arg("solid"), py::arg("to_world") = py::none(),
+           "Puts a vpm.SolidBody at a pose, mesh to world; without, at the origin. Takes no time: "
+           "a solid that moves is made anew, or moved by `solids` of a query. Raises ArgumentError "
+           "for a solid made without forces, RefusedError for a pose that is not rigid.")
+      .def_property_readonly("is_solid", &Body::is_solid, "True if the body is a solid.")
       .def_property_readonly("points", &Body::points, py::call_guard<py::gil_scoped_release>(),
-                             "Number of points with a normal.");
+                             "Number of points with a normal; a solid has none.");
   py::class_<Scene>(module, "Scene",
                     "Bodies in one world frame, whose volumes, forces and torques add up. "
                     "Immutable and thread-safe.")

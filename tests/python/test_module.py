@@ -239,6 +239,45 @@ def test_solids_share_what_geometry_says():
         vpm.OverlapQuery(vpm.SolidBody(vpm.solid_of((CUBE, FACES)), with_force=False), body)
 
 
+def test_solids_of_a_scene_move_and_add_up(tool, cloud):
+    solid = vpm.SolidBody(tool)
+    assert solid.volume == pytest.approx(0.008, rel=1e-9)
+    wall, near, far = vpm.Body(cloud), vpm.Body(solid, [0.15, 0, 0.95, 0, 0, 0, 1]), vpm.Body(solid)
+    assert near.is_solid and not wall.is_solid and near.points == 0
+    scene, pose, query = vpm.Scene([wall, near, far]), [0, 0, 0.95, 0, 0, 0, 1], vpm.Query(tool)
+    whole = query.run(scene, pose)
+    alone, shared, none = query.parts()
+    assert shared.volume == pytest.approx(0.05 * 0.04, abs=1e-11) and none.volume == 0
+    assert whole.volume == pytest.approx(alone.volume + shared.volume, rel=1e-12) and 0 <= whole.closure <= 1e-8
+    assert np.allclose(whole.force, np.add(alone.force, shared.force), atol=1e-15)
+    assert vpm.Query(tool).run(vpm.Scene([far, near, wall]), pose).volume == whole.volume
+    moved = [[0.18, 0, 0.95, 0, 0, 0, 1], [0, -0.19, 0.95, 0, 0, 0, 1]]
+    assert query.run(scene, pose, moved).volume - alone.volume == pytest.approx(0.04 * (0.02 + 0.01), abs=1e-10)
+    assert query.run(scene, pose, matrices_of(np.array(moved))).volume == query.run(scene, pose, moved).volume
+
+
+def test_each_job_has_poses_of_its_solids(tool, cloud):
+    scene, query = vpm.Scene([vpm.Body(vpm.SolidBody(tool)), vpm.Body(cloud)]), vpm.Query(tool)
+    poses = poses_into_the_wall(5)
+    solids = np.repeat(poses[:, None], 1, axis=1) + [0.05, 0, 0, 0, 0, 0, 0]
+    batch = query.run_batch(scene, poses, solids=solids)
+    ones = [query.run(scene, pose, moved) for pose, moved in zip(poses, solids)]
+    assert list(batch.volume) == [one.volume for one in ones] and list(batch.closure) == [one.closure for one in ones]
+    assert np.isnan(vpm.Query(tool).run_batch(vpm.Scene(cloud), poses).closure).all()
+    matrices = matrices_of(solids[:, 0])[:, None]  # which differ from the quaternions by rounding
+    assert query.run_batch(scene, poses, solids=matrices).volume == pytest.approx(batch.volume, rel=1e-9)
+    for wrong in (solids[0], solids[:4], np.concatenate([solids, solids], axis=1), solids[:, :0]):
+        with pytest.raises(vpm.Error):
+            query.run_batch(scene, poses, solids=wrong)
+    for none in ([], np.empty((0, 7))):
+        with pytest.raises(vpm.ArgumentError):
+            query.run(scene, poses[0], none)
+    with pytest.raises(vpm.ArgumentError):
+        vpm.Body(vpm.SolidBody(tool, with_force=False))
+    levels = vpm.LevelQuery(tool, scene, poses[0], max_error=0.5)
+    assert levels.run(scene, poses[0], solids[0]).closure is not None
+
+
 def test_a_coupling_holds_the_tool(tool):
     coupling = vpm.VirtualCoupling(tool.center_of_mass, np.eye(4), stiffness=500, damping=5,
                                    mass=vpm.critical_mass(500, 5), gyration=tool.gyration)
