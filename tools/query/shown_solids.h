@@ -1,6 +1,7 @@
 // Solids of a scene on the page of vpm-query --view.
 #pragma once
 
+#include <vpm/pose.h>
 #include <vpm/scene.h>
 
 #include <cstddef>
@@ -8,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/core/pose.h"
 #include "libvpm/view/page.h"
 
 namespace vpm::tools {
