@@ -65,7 +65,7 @@ class Plots(unittest.TestCase):
             for script in SCRIPTS:
                 code, text = run(script, folder)
                 self.assertEqual(code, 1, script.name)
-                self.assertRegex(text, rf"^{script.name}: .* has no \S+.*; make them by (vpm-bench|scripts/demo.sh)")
+                self.assertRegex(text, rf"^{script.name}: .* has no \S+.*; make them by (vpm-bench|scripts/demo.sh|two-links)")
 
     def test_refuse_results_that_they_cannot_draw(self):
         texts = ("", "{}", "[]", "null", json.dumps({"results": [{"part": "spheres"}], "settings": {}}))
@@ -73,7 +73,7 @@ class Plots(unittest.TestCase):
             for text in texts:
                 with tempfile.TemporaryDirectory() as folder:
                     for name in ("results.jsonl", "truth.csv", "pack.json", "stats.json", "spheres.csv", "depth.png",
-                                 "accuracy.csv", f"{script.stem.removeprefix('plot_')}.json"):
+                                 "accuracy.csv", "links.csv", f"{script.stem.removeprefix('plot_')}.json"):
                         (pathlib.Path(folder) / name).write_text(text)
                     code, said = run(script, folder)
                     self.assertEqual(code, 1, f"{script.name}: {text!r}")
