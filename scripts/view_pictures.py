@@ -4,6 +4,7 @@
 usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and examples/pictures
 """
 import io
+import math
 import pathlib
 import subprocess
 import sys
@@ -42,6 +43,34 @@ def make_pages(tools, folder):
         "--view", "normals.html", "--quiet")
     run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", "poses.jsonl", "-o", "results.jsonl",
         "--view", "query.html", "--quiet")
+    make_scenes(run, pathlib.Path(folder))
+
+
+def ring_of_points():
+    """Returns a PLY file of points with normals: a floor with a bump under the tool, and a wall behind."""
+    rows = []
+    for i in range(-60, 61):
+        for k in range(-60, 61):
+            x, y = 0.005 * i, 0.005 * k
+            z, slope = 0.98 - 0.06 * math.exp(-(x * x + y * y) / 0.005), 0.06 / 0.0025 * math.exp(-(x * x + y * y) / 0.005)
+            rows.append(f"{x} {y} {z} {slope * x} {slope * y} -1")
+            rows.append(f"{x} 0.3 {0.68 + 0.005 * (k / 2 + 30)} 0 -1 0")
+    names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    return f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\n{names}end_header\n" + "\n".join(rows) + "\n"
+
+
+def make_scenes(run, folder):
+    """Makes the pages of tools/query/scenes.md: points, solids, and several bodies."""
+    box = [(x, y, z) for z in (-.015, .015) for y in (-.1, .1) for x in (-.02, .02)]
+    faces = ("021", "123", "456", "576", "014", "154", "263", "367", "042", "246", "135", "375")
+    (folder / "jaw.off").write_text("OFF\n8 12 0\n" + "\n".join(" ".join(map(str, corner)) for corner in box) + "\n" +
+                                    "\n".join("3 " + " ".join(face) for face in faces) + "\n")
+    (folder / "points.ply").write_text(ring_of_points())
+    run("vpm-normals", "points.ply", "-o", "points.vpmc", "--quiet")
+    jaws = ("--solid", "jaw.off@-0.1,0,0.93,0,0,0,1", "--solid", "jaw.off@0.12,0,0.93,0,0,0,1")
+    for name, scene in (("points", ("--cloud", "points.vpmc")), ("solids", jaws), ("several", ("--cloud", "scene.vpmc", *jaws))):
+        run("vpm-query", "--tool", "tool.vpmg", *scene, "--pose", "0.01,0,0.94,0.7,0.1,0,0.70710678", "--quiet", "-o",
+            f"{name}.jsonl", "--view", f"scene-{name}.html")
 
 
 # Scripts that each page runs before its picture is taken.
@@ -50,6 +79,9 @@ PICTURES = {
     "pack": "vpm.setStep(150)",
     "graph": "vpm.setStep(0); vpm.showCell(3)",
     "normals": "vpm.setView('overview')",
+    "scene-points": "vpm.setView('overview')",
+    "scene-solids": "vpm.setView('overview')",
+    "scene-several": "vpm.setView('contact')",
 }
 
 
