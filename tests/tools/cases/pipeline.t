@@ -63,6 +63,7 @@ again.vpmc
 again.vpmg
 bench
 bench.json
+block.off
 call.json
 cube.off
 cube.vpmg
@@ -72,6 +73,7 @@ normals.json
 open.off
 pack.json
 path.txt
+pins.off
 piped.vpmp
 query.json
 result.jsonl
