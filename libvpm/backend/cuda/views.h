@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "libvpm/backend/cell_clusters.h"
 #include "libvpm/measure/body_sum.h"
@@ -109,7 +110,9 @@ struct RawResult {
   std::uint32_t boundary = 0, inside = 0;
   UnseenSum unseen;
   std::uint32_t flood_ns = 0;  // time of one pose after the boundary was known, ns
+  std::uint32_t unused = 0;    // takes the place of padding, which would be copied uninitialised
 };
+static_assert(std::has_unique_object_representations_v<RawResult>);
 
 // Returns what a body with this surface gives.
 template <class Surface>
