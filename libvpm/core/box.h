@@ -20,7 +20,7 @@ struct Box {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  // Adds all of a box; nothing if that is empty.
+  // Grows the box until it holds another one, too; an empty one changes nothing.
   void add_box(const Box& box) {
     low = {std::min(low.x, box.low.x), std::min(low.y, box.low.y), std::min(low.z, box.low.z)};
     high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y),

@@ -35,7 +35,8 @@ struct SharedSolid {
   // |∫ x cross n dA| to the cube, of the smaller reach; the larger of both.
   double closure = 0;
   int attempts = 0;  // with different jitter
-  // Of which all is the sum, to rounding: largest first, and the rest in one; if asked.
+  // The contacts asked for, largest first, and one with all others; they add up to the above, to
+  // rounding. Empty if none were asked for.
   std::vector<SharedContact> contacts;
 };
 

@@ -38,8 +38,8 @@ struct DeepPlace {
 // A connected part of the boundary of what both contain, in the first's frame.
 struct SurfaceContact {
   std::array<InnerSurface, 2> inner;
-  // Where one surface may lie deepest below the other's: where that was sampled for the force, and
-  // where a corner lies deepest if depths are as linear as the force takes them for.
+  // Two places where a surface may lie deepest inside the other solid: of those at which forces
+  // sampled the depth, and of corners, whose depth is continued linearly from the nearest sample.
   std::array<DeepPlace, 2> deepest;
 };
 

@@ -335,7 +335,8 @@ TEST(Gltf, HiddenNodesAreLeftOutAndNamed) {
   const RawMesh shown = parse(glb("", tree + visible(true), tip + visible(true) + end), "a.glb");
   EXPECT_EQ(shown.polygon_count(), 24U);
   EXPECT_EQ(all_notes(shown).find("hidden"), std::string::npos);
-  // A group without a mesh hides what is below; a node that is asked for by name is refused.
+  // A hidden node hides those below it, though it has no mesh itself. Who asks for a hidden node by
+  // its name is refused.
   const std::string group =
       glb("", tree, R"(,{"name":"group")" + std::string(below) + visible(false) + end + lid + end);
   expect_note(parse(group, "a.glb"), "1 node is left out as hidden (KHR_node_visibility): lid");

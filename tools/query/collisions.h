@@ -24,7 +24,7 @@ class Collisions {
 
   // Adds the fields `collides` and `above`, if they are asked, to the line of results of one pose.
   void answer(const Result& result, nlohmann::ordered_json& line);
-  // Counts an answer whose line has the field.
+  // Takes an answer into account for exit_code(), of a pose whose line says `collides` already.
   void count(Collides found);
 
   double unseen_limit() const { return unseen_limit_; }

@@ -22,7 +22,7 @@ using SayOfMesh = void (*)(void* listener, bool is_warning, const char* text);
 using PackMesh = bool (*)(const char* mesh, unsigned spheres, int threads, const char* output,
                           SayOfMesh say, void* listener, PackingFault* fault);
 
-// Reads the mesh of a file and prepares it, with what forces need or without, into `body`.
+// Reads the mesh of a file and sets `body` to its solid, prepared for forces if `with_force`, too.
 // Thread-safe. Returns false, and fills `fault`, where that fails.
 using ReadSolid = bool (*)(const char* mesh, const SolidOptions* options, bool with_force,
                            SayOfMesh say, void* listener, std::optional<SolidBody>* body,

@@ -39,7 +39,7 @@ class PoseQueries {
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), jobs);
   }
 
-  // Asks all poses by several threads, each for poses of its own.
+  // Reads all poses, answers each on one of several threads, and writes the answers in order.
   void ask_by_threads(PoseSource& source, int threads) {
     std::vector<LevelQuery> queries;
     for (int k = 0; k < threads; ++k) queries.push_back(query_.another());

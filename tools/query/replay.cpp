@@ -227,8 +227,11 @@ void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoup
 void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
                   Collisions& collisions, ResultOutput& output,
                   std::optional<PoseView>& view) const {
-  if (view) view->see_frame(feed_->frame());
-  const std::vector<Pose> solids = paths_.solids(now_.front().step);
+  std::vector<Pose> solids;  // for the view alone
+  if (view) {
+    view->see_frame(feed_->frame());
+    solids = paths_.solids(now_.front().step);
+  }
   for (std::size_t tool = 0; tool < now_.size(); ++tool) {
     const CoupledStep& step = now_[tool];
     const auto index = static_cast<std::uint32_t>(tool);

@@ -16,7 +16,7 @@ class CellClassifier {
   explicit CellClassifier(const PoseWork<Surface>& work) : work_(work) {}
 
   // Notes the parts that the tree of groups shows to be free, and adds what of them was not seen.
-  // Returns false if these are all, which takes far less than run().
+  // Returns false if the whole tool is free: then no group is left to classify.
   bool finds_open_groups() {
     work_.states.open_groups.clear();
     const std::vector<GroupTreeNode>& tree = work_.level.group_tree();
@@ -109,8 +109,8 @@ class CellClassifier {
     work_.states.set(part, ClusterClass::free);
     if (!adds_as_one(part, in_ball)) add_free_rows(part.begin, part.end);
   }
-  // Adds what was not seen of free rows, where their ball tells that for all of them; otherwise
-  // returns false.
+  // Adds the weight of rows of cells, all of them free, to what was not seen. Returns false, and
+  // adds nothing, where the class of a ball about them does not tell it for all at once.
   bool adds_as_one(const CellCluster& rows, const BallClass& in_ball) {
     const Sight sight = sight_of<Surface>(in_ball);
     if (sight == Sight::mixed) return false;
