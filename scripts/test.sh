@@ -11,4 +11,5 @@ install_meanwhile "${test_run_packages[@]}" ${VPM_CHECKERS:-}
 build
 wait_for_packages
 say "Running the tests"
-ctest --test-dir "$repository/build/release" --output-on-failure --parallel "$(nproc)" "$@"
+# One more than there are cores, for tests wait for disks, processes and browsers.
+ctest --test-dir "$repository/build/release" --output-on-failure --parallel "$(($(nproc) + 1))" "$@"

@@ -25,6 +25,7 @@ NAME = "<script>alert(1)</script>.vpmg"  # of a file, as a page must show it
 OPEN_MESH = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n"
 INTRINSICS = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
 WINDOW = (960, 540)  # pixels, which the processor draws: the time of this test is theirs
+PHONE = (390, 844)
 HALVES = (240, 320)  # rows and columns of the demo's image, of which every second is taken
 HALF_INTRINSICS = ("--intrinsics", "262.5,262.5,159.75,119.75", "--depth-scale", "5000")
 
@@ -112,11 +113,27 @@ def make_demo():
 
 
 class PageTest(unittest.TestCase):
+    demo_pages = {}  # for a desk and for a phone
+
     def open(self, name, width=WINDOW[0], height=WINDOW[1], phone=False):
-        page = BROWSER.open(FOLDER / name, width, height, phone)
+        page = self.opened(name, width, height, phone)
         self.addCleanup(page.close)
+        return page
+
+    def opened(self, name, width, height, phone):
+        page = BROWSER.open(FOLDER / name, width, height, phone)
         self.assertEqual(page.faults, [])
         self.assertEqual([url for url in page.requests if not url.startswith(("file:", "data:", "blob:"))], [])
+        return page
+
+    def demo(self, phone=False):
+        """Returns query.html at its first step and point of view: most of a page's time is taken to open it, so it is opened once."""
+        if phone not in self.demo_pages:
+            self.demo_pages[phone] = self.opened("query.html", *(PHONE if phone else WINDOW), phone)
+            self.demo_pages[phone].evaluate("first = null")
+        page = self.demo_pages[phone]
+        page.call("Page.bringToFront")  # pages behind others are not drawn
+        page.evaluate("first ??= vpm.report().step; vpm.setStep(first); vpm.setView('overview')")
         return page
 
     def layer(self, page, name):
@@ -146,7 +163,7 @@ class PageTest(unittest.TestCase):
 
 class Query(PageTest):
     def test_shows_the_counts_and_numbers_of_the_results(self):
-        page = self.open("query.html")
+        page = self.demo()
         lines = results("results.jsonl")
         self.assertEqual(page.report()["steps"], len(lines))
         for step in (0, 60, len(lines) - 1):
@@ -159,7 +176,7 @@ class Query(PageTest):
         self.assertEqual(self.layer(page, "measured surface")["count"], HALVES[0] * HALVES[1] - depth["invalid"])
 
     def test_slider_changes_pose_and_numbers(self):
-        page = self.open("query.html")
+        page = self.demo()
         before = page.report()["texts"]
         page.evaluate("slider = document.getElementById('slider'); slider.value = 3;"
                       "slider.dispatchEvent(new Event('input'))")
@@ -171,7 +188,7 @@ class Query(PageTest):
         self.assertEqual(page.report()["step"], 4)
 
     def test_button_plays_the_path_and_stops(self):
-        page = self.open("query.html")
+        page = self.demo()
         # The path begins anew after its last pose, so the steps are noted as the page goes through them.
         page.evaluate("vpm.setStep(0); seen = new Set();"
                       "watch = setInterval(() => seen.add(document.getElementById('slider').value), 10)")
@@ -186,19 +203,19 @@ class Query(PageTest):
         self.assertEqual(page.report()["step"], stopped)
 
     def test_screenshots_show_tool_and_surface_on_desks_and_phones(self):
-        for width, height, phone in ((*WINDOW, False), (390, 844, True)):
-            page = self.open("query.html", width, height, phone)
+        for phone in (False, True):
+            page = self.demo(phone)
             self.assert_fits(page)
             for view in ("overview", "side", "contact"):
                 page.evaluate(f"vpm.setView('{view}')")
                 image = scene(page)
-                self.assertGreater(share(image, inside), 0.002, f"{view} {width}")
-                self.assertGreater(share(image, boundary), 0.0005, f"{view} {width}")
+                self.assertGreater(share(image, inside), 0.002, f"{view} {phone}")
+                self.assertGreater(share(image, boundary), 0.0005, f"{view} {phone}")
             page.evaluate("vpm.setView('camera')")
             self.assertGreater(share(scene(page), surface), 0.15)
 
     def test_software_draws_coarser_while_the_scene_turns(self):
-        page = self.open("query.html")
+        page = self.demo()
         self.assertTrue(page.report()["bySoftware"])
         page.settle()
         at_rest = page.report()["load"]
@@ -212,7 +229,7 @@ class Query(PageTest):
         self.assertEqual(page.report()["load"], at_rest)
 
     def test_mouse_and_touch_turn_the_scene(self):
-        page = self.open("query.html")
+        page = self.demo()
         before = scene(page)
         page.mouse("mousePressed", 600, 300)
         for x in (620, 660, 700):
@@ -222,7 +239,7 @@ class Query(PageTest):
         self.assertGreater(numpy.abs(turned - before).mean(), 0.005)
         page.call("Input.dispatchMouseEvent", type="mouseWheel", x=600, y=300, deltaX=0, deltaY=-300)
         self.assertGreater(numpy.abs(scene(page) - turned).mean(), 0.005)
-        phone = self.open("query.html", 390, 844, True)
+        phone = self.demo(phone=True)
         before = scene(phone)
         for kind, x in (("touchStart", 150), ("touchMove", 190), ("touchMove", 240), ("touchEnd", None)):
             points = [] if x is None else [{"x": x, "y": 250}]
@@ -230,10 +247,11 @@ class Query(PageTest):
         self.assertGreater(numpy.abs(scene(phone) - before).mean(), 0.005)
 
     def test_switches_hide_layers(self):
-        page = self.open("query.html")
+        page = self.demo()
         page.evaluate("vpm.setView('side')")
         self.assertGreater(share(scene(page), inside), 0.002)
         page.evaluate("vpm.setLayer('spheres by state', false)")
+        self.addCleanup(page.evaluate, "vpm.setLayer('spheres by state', true); vpm.setLayer('not seen by the camera', false)")
         self.assertLess(share(scene(page), inside), 0.0005)
         without = scene(page)
         page.evaluate("vpm.setLayer('not seen by the camera', true)")
@@ -364,7 +382,7 @@ class OtherTools(PageTest):
     def test_other_tools_fit_a_phone(self):
         refused("phone", OPEN_MESH)
         for name in ("pack.html", "graph.html", "normals.html", "phone.html"):
-            page = self.open(name, 390, 844, True)
+            page = self.open(name, *PHONE, True)
             self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth - innerWidth"), 0, name)
             self.assertGreater(numpy.std(scene(page)), 0.02, name)
 
