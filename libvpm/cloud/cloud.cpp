@@ -136,7 +136,7 @@ void write_cloud(const std::string& path, const Cloud& cloud) {
     writer.add(kPixels, 0, std::span(cloud.pixels));
     writer.add(kCamera, 0, std::span(&record, 1));
     std::vector<float> depth = cloud.sensor->depth.depth;
-    for (float& value : depth) value = is_measured(value) ? value : 0.0F;
+    for (float& value : depth) value = kept_depth(value);
     writer.add(kDepth, 0, std::span(std::as_const(depth)));
   }
   writer.write(path);

@@ -121,7 +121,7 @@ Cloud assemble_cloud(const DepthImage& depth, const Camera& camera,
     std::size_t k = first[static_cast<std::size_t>(begin)];
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
       for (std::size_t i = v * depth.width; i < (v + 1) * depth.width; ++i) {
-        if (!is_measured(depth.depth[i])) cloud.sensor->depth.depth[i] = 0;
+        cloud.sensor->depth.depth[i] = kept_depth(depth.depth[i]);
         if (!exists(normals[i])) continue;
         const Vec3 normal = widen(normals[i]);
         const double x = static_cast<double>(i - v * depth.width), y = static_cast<double>(v);

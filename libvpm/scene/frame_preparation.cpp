@@ -143,6 +143,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
     images_.take_rows(depth, options_, begin, end);
     for (int v = begin; v < end; ++v)
       std::copy_n(images_.inverse.at(0, v), width, seen.inverse.at(0, v));
+    seen.take_removed(depth, begin, end);
   };
   std::atomic<bool> is_sound{true};
   const auto find = [&](int begin, int end, const auto& made) {

@@ -80,6 +80,16 @@ TEST(MovedFrom, Body) {
                              [](auto& b) { vpm::Scene(std::vector<vpm::Body>{b}); }});
 }
 
+TEST(MovedFrom, SolidRemover) {
+  static const std::vector<vpm::SolidBody> solids{vpm::SolidBody(tetrahedron(), false)};
+  static const std::vector<vpm::SolidPlace> places{{kPose, 0.01}};
+  static std::vector<float> depth(std::size_t{kSide} * kSide, 1.0F);
+  expect_refused<vpm::SolidRemover>(
+      vpm::SolidRemover(solids), "SolidRemover",
+      {[](auto& r) { r.remove(places, kCamera, depth); },
+       [](auto& r) { r.remove(places, cloud()); }, [](auto& r) { r.found(); }});
+}
+
 TEST(MovedFrom, Scene) {
   static std::vector<vpm::Result> results(1);
   static vpm::Query query(tool());

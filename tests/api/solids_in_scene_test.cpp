@@ -191,4 +191,22 @@ TEST(SolidsOfOldFiles, AreRefusedWithTheCure) {
   EXPECT_NEAR(vpm::Query(now).run(scene, Pose{}).volume, .002, 1e-11);
 }
 
+// A cloud's points on a removed solid go, and one without a camera has nothing to remove from.
+TEST(SolidRemover, TakesPointsOfClouds) {
+  const vpm::Camera camera{{60, 60, 31.5, 23.5}, 64, 48, {}};
+  const vpm::PointCloud wall =
+      vpm::PointCloud::from_depth(std::vector<float>(64 * 48, 1.0F), camera);
+  const std::vector<vpm::SolidBody> solids{vpm::SolidBody(box(.2, .2, .2), false)};
+  const std::vector<vpm::SolidPlace> places{{{{}, {0, 0, 1}}, 0.01}};
+  vpm::SolidRemover remover(solids);
+  const vpm::PointCloud rest = remover.remove(places, wall);
+  EXPECT_LT(rest.size() + 100, wall.size());
+  EXPECT_GT(rest.size(), wall.size() / 2);
+  EXPECT_GT(remover.found()[0].explained, 100);  // the wall goes through it
+  EXPECT_EQ(rest.camera()->width, 64);
+  const std::vector<vpm::Vec3> points{{0, 0, 1}, {0.1, 0, 1}}, normals(2, {0, 0, -1});
+  EXPECT_THROW(remover.remove(places, vpm::PointCloud::from_points(points, normals)), vpm::Error);
+  EXPECT_THROW(remover.remove({}, wall), vpm::Error);
+}
+
 }  // namespace

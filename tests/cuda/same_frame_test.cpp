@@ -59,6 +59,11 @@ const std::pair<const char*, Depths> kImages[] = {
        const float odd[] = {NAN, -1, HUGE_VALF, 1e-30F, 1e30F, 0};
        return (u + 2 * v) % 4 == 0 ? odd[random() % 6] : 0.8F;
      }},
+    {"narrow strips that were removed, among holes",
+     [](auto u, auto v, auto& random) {
+       const float z = wall(0.1F, 0.004F)(u, v, random);
+       return (u + v / 3) % 11 < 2 ? kRemovedDepth : z;
+     }},
 };
 
 DepthImage image_of(const Depths& depths, std::uint32_t width, std::uint32_t height) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -150,6 +151,30 @@ TEST(FramePreparation, WhatIsRefusedLeavesNoCloudBehind) {
   EXPECT_EQ(cloud.positions().size(), 0U);
   EXPECT_TRUE(cloud.pixel_begin().empty());
   expect_same(preparation, good, options, cloud);
+}
+
+// However narrow it is, what was removed stays unknown; a hole beside it is closed.
+TEST(FramePreparation, ClosesNothingThatWasRemoved) {
+  DepthImage image{40, 30, std::vector<float>(40 * 30, 1.0F)};
+  for (std::uint32_t v = 0; v < image.height; ++v) {
+    image.depth[image.index(10, v)] = kRemovedDepth;
+    image.depth[image.index(20, v)] = image.depth[image.index(21, v)] = kRemovedDepth;
+    image.depth[image.index(30, v)] = 0;
+  }
+  const Camera camera{{40, 40, 19.5, 14.5}, 40, 30, {}};
+  PreparedImage frame;
+  FramePreparation({}, Denoising::on).prepare(image, camera, frame);
+  const PreparedImage cloud(make_cloud(image, camera, {}));
+  for (const PreparedImage* prepared : {&std::as_const(frame), &cloud})
+    for (int v = 1; v < 29; ++v)
+      for (int u = 0; u < 40; ++u) {
+        const bool is_removed = u == 10 || u == 20 || u == 21;
+        const Vec3 place = unproject(camera.intrinsics, u, v, 0.5);
+        EXPECT_EQ(prepared->surface().sight_at(place), is_removed ? Sight::hole : Sight::seen)
+            << u << ' ' << v;
+      }
+  EXPECT_EQ(frame.positions().size(), cloud.positions().size());
+  EXPECT_TRUE(is_removed(make_cloud(image, camera, {}).sensor->depth.depth[10]));
 }
 
 TEST(FramePreparation, ReadsPointsAsMeasured) {

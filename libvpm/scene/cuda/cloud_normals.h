@@ -9,17 +9,23 @@
 namespace vpm::cuda {
 
 // Return the stored inverse depth of a pixel that is not measured, a NaN with the greatest integer
-// as bits, so that it lies within no gate; and of a pixel beyond the image, as on the host
-// (kBeyondImage).
+// as bits, so that it lies within no gate; of one that was removed, which is no hole to be closed, a
+// NaN with the next integer; and of a pixel beyond the image, as on the host (kBeyondImage).
 __device__ __forceinline__ float unmeasured() {
   return __int_as_float(0x7fffffff);
+}
+__device__ __forceinline__ float removed() {
+  return __int_as_float(0x7ffffffe);
 }
 __device__ __forceinline__ float beyond_image() {
   return __int_as_float(-1);
 }
-// Returns `inverse`, or unmeasured() for 0.
+// Returns `inverse`, or unmeasured() for 0 and removed() for -0.
 __device__ __forceinline__ float measured_or_none(float inverse) {
-  return inverse == 0 ? unmeasured() : inverse;
+  return inverse != 0 ? inverse : __float_as_int(inverse) == 0 ? unmeasured() : removed();
+}
+__device__ __forceinline__ bool is_removed_pixel(float stored) {
+  return __float_as_int(stored) == __float_as_int(removed());
 }
 
 // Holds least and greatest inverse depth of some pixels as integers, which order like floats that

@@ -20,11 +20,11 @@ __device__ float4 four_depths(const DepthSource& source, std::size_t first) {
 }
 
 __device__ void store(float4 d, const CloudRecipe& recipe, std::size_t first) {
-  d = {usable_depth(d.x), usable_depth(d.y), usable_depth(d.z), usable_depth(d.w)};
-  *reinterpret_cast<float4*>(recipe.depth + first) = d;
   *reinterpret_cast<float4*>(recipe.inverse + first) = {
-      inverse_of_usable(d.x), inverse_of_usable(d.y), inverse_of_usable(d.z),
-      inverse_of_usable(d.w)};
+      inverse_or_removed(d.x), inverse_or_removed(d.y), inverse_or_removed(d.z),
+      inverse_or_removed(d.w)};
+  *reinterpret_cast<float4*>(recipe.depth + first) = {usable_depth(d.x), usable_depth(d.y),
+                                                      usable_depth(d.z), usable_depth(d.w)};
 }
 
 // Sets the coarse tiles, which several blocks' pixels share, to the neutral range.

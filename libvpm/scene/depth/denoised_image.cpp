@@ -15,18 +15,18 @@ struct ClosedPixel {
   float value;
 };
 
-// Marks pixels of a tile that are not measured but have a measured opposite pair beside them. `at`
-// is the first pixel. Returns false if all pixels are measured.
+// Marks pixels of a tile that are holes but have a measured opposite pair beside them. `at`
+// is the first pixel. Returns false if none is a hole.
 VPM_VECTOR_CLONES
 bool mark_candidates(const float* at, std::ptrdiff_t stride, std::uint8_t (&candidate)[kTile]) {
   int holes = 0;
-  for (int i = 0; i < kTile; ++i) holes |= at[i] <= 0;
+  for (int i = 0; i < kTile; ++i) holes |= is_hole(at[i]);
   if (holes == 0) return false;
   const float *up = at - stride, *down = at + stride;
   for (int i = 0; i < kTile; ++i) {
     const auto is_pair = [](float a, float b) { return (a > 0) & (b > 0); };
     candidate[i] =
-        (at[i] <= 0) & (is_pair(at[i - 1], at[i + 1]) | is_pair(up[i], down[i]) |
+        is_hole(at[i]) & (is_pair(at[i - 1], at[i + 1]) | is_pair(up[i], down[i]) |
                         is_pair(up[i - 1], down[i + 1]) | is_pair(up[i + 1], down[i - 1]));
   }
   return true;
@@ -186,12 +186,28 @@ void denoise_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f*
   }
 }
 
+// Returns the inverse depth, 0 also where the pixel was removed: no reader of the surface asks why.
+inline float without_mark(float inverse) {
+  return inverse + 0.0F;
+}
+
+VPM_VECTOR_CLONES
+void copy_measured(const float* inverse, int width, float* measured) {
+  for (int u = 0; u < width; ++u) measured[u] = without_mark(inverse[u]);
+}
+
+VPM_VECTOR_CLONES
+void mark_removed(const float* depth, int width, float* inverse) {
+  for (int u = 0; u < width; ++u) inverse[u] = is_removed(depth[u]) ? depth[u] : inverse[u];
+}
+
 VPM_VECTOR_CLONES
 void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* normals) {
   const float *inverse = seen.inverse.at(0, v), *x = seen.x.at(0, v), *y = seen.y.at(0, v),
               *z = seen.z.at(0, v);
   for (int u = 0; u < seen.inverse.width; ++u) {
-    depths[u] = {inverse[u], inverse[u]};
+    const float known = without_mark(inverse[u]);
+    depths[u] = {known, known};
     normals[u] = {x[u], y[u], z[u]};
   }
 }
@@ -223,6 +239,12 @@ void SeenImage::set_normal(int u, int v, Vec3f normal) {
   *z.at(u, v) = normal.z;
 }
 
+void SeenImage::take_removed(const DepthImage& depth, int begin, int end) {
+  for (int v = begin; v < end; ++v)
+    mark_removed(depth.depth.data() + static_cast<std::size_t>(v) * depth.width, inverse.width,
+                 inverse.at(0, v));
+}
+
 void SeenImage::mark_rows(int begin, int end) {
   for (int v = begin; v < end; ++v) mark_row(*this, v, marked.at(0, v));
 }
@@ -244,7 +266,7 @@ void DenoisedImage::read_rows(const SeenImage& seen, Denoising points, int begin
   const auto read_row = points == Denoising::on ? denoise_row : take_row;
   for (int v = begin; v < end; ++v) {
     read_row(seen, v, tiles_[0].data() + first_of_row(v), normals_.data() + first_of_row(v));
-    std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+    copy_measured(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/padded_image.h"
 #include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/vec3.h"
@@ -26,12 +27,14 @@ struct SeenImage {
   // Rows above and below a pixel that decide its mark.
   static constexpr int kReachOfMarks = kDenoisedRadius;
 
-  PaddedImage inverse;  // inverse depth, 1/m, holes closed
+  PaddedImage inverse;  // inverse depth, 1/m, holes closed; -0 where a pixel was removed
   PaddedImage x, y, z;  // normals in camera axes, zero where there is none
   PaddedImage marked;   // `inverse`, negative where the pixel is not clear (denoised_pixel.h)
 
   void resize(std::uint32_t width, std::uint32_t height);
   void set_normal(int u, int v, Vec3f normal);
+  // Marks the pixels of rows [begin, end) that were removed, whose inverse depths are taken already.
+  void take_removed(const DepthImage& depth, int begin, int end);
   // Marks rows [begin, end); threads may mark different ones.
   void mark_rows(int begin, int end);
 };

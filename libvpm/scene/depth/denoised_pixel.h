@@ -3,6 +3,8 @@
 // or a vector of floats (core/lanes.h).
 #pragma once
 
+#include <cmath>
+
 #include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
@@ -10,6 +12,12 @@ namespace vpm {
 // Number of passes. Each closes the pixels next to those that are known by then, so holes of twice
 // that width close.
 inline constexpr int kFillPasses = 2;
+
+// True if an inverse depth is that of an unmeasured pixel that may be closed: 0, but not the -0 of
+// one that was removed.
+VPM_HD inline bool is_hole(float inverse) {
+  return (inverse == 0) & (std::copysign(1.0F, inverse) > 0);
+}
 
 // Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a
 // plane; 0 where there are none. `image(u, v)` is the inverse depth, 0 where unknown.

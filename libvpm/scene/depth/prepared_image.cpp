@@ -30,6 +30,7 @@ PreparedImage::PreparedImage(const Cloud& cloud, Denoising points) : camera_(clo
   order_by_pixel(cloud, steps.seen());
   const auto take = [&](int begin, int end) {
     take_inverse_depth(depth, begin, end, steps.seen().inverse);
+    steps.seen().take_removed(depth, begin, end);
   };
   const auto find = [](int begin, int end, const auto& made) {
     for (int v = begin; v < end; ++v) made(v);

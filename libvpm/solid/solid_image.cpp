@@ -1,0 +1,383 @@
+#include "libvpm/solid/solid_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libvpm/core/lanes.h"
+
+namespace vpm {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::infinity();
+// What is nearer to the camera's plane than this part of the solid's reach is not drawn.
+constexpr double kNearestPart = 0x1p-20;
+// Pixels by which float positions in the image are taken for wider than they are.
+constexpr float kPad = 0x1p-6F;
+// Largest size, pixels, of a triangle whose box is drawn for it.
+constexpr int kSmallAcross = 4, kSmallDown = 4;
+// Vertices that are projected at once, so that loops vectorise.
+constexpr int kBatch = 64;
+// Largest distance, pixels, from an image that is told from further ones.
+constexpr float kFar = 0x1p24F;
+
+struct FloatPose {
+  float xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z;
+};
+
+FloatPose rounded(const Pose& p) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  const Rotation& r = p.rotation;
+  return {f(r.row0.x), f(r.row0.y), f(r.row0.z), f(p.translation.x),
+          f(r.row1.x), f(r.row1.y), f(r.row1.z), f(p.translation.y),
+          f(r.row2.x), f(r.row2.y), f(r.row2.z), f(p.translation.z)};
+}
+
+struct Bounds {
+  float u0 = kNone, u1 = -kNone, v0 = kNone, v1 = -kNone;  // of vertices before the camera
+  float least = kNone, greatest = 0;                       // their inverse depths
+  bool has_behind = false;                                 // any that are not
+};
+
+[[gnu::always_inline]] inline float limited(float value) {
+  const float low = value > -kFar ? value : -kFar;
+  return low < kFar ? low : kFar;
+}
+
+// Projects vertices [first, first + count) of at most kBatch to out[0], out[4], ...
+[[gnu::always_inline]] inline void project_batch(const DrawnSolid& solid, std::size_t first,
+                                                 int count, const FloatPose& p, float fx, float fy,
+                                                 float cx, float cy, float nearest, float* out,
+                                                 Bounds& bounds) {
+  float x[kBatch] = {}, y[kBatch] = {}, z[kBatch] = {}, u[kBatch], v[kBatch], w[kBatch];
+  std::copy_n(solid.x() + first, count, x);
+  std::copy_n(solid.y() + first, count, y);
+  std::copy_n(solid.z() + first, count, z);
+  for (int i = 0; i < kBatch; ++i) {
+    const float depth = p.zx * x[i] + p.zy * y[i] + p.zz * z[i] + p.z;
+    const bool is_before = depth > nearest;
+    const float inverse = 1 / (is_before ? depth : 1.0F);
+    const float across = p.xx * x[i] + p.xy * y[i] + p.xz * z[i] + p.x;
+    const float down = p.yx * x[i] + p.yy * y[i] + p.yz * z[i] + p.y;
+    u[i] = limited(fx * (across * inverse) + cx);
+    v[i] = limited(fy * (down * inverse) + cy);
+    w[i] = is_before ? inverse : -1.0F;
+  }
+  for (int i = 0; i < count; ++i) {
+    out[4 * i] = u[i], out[4 * i + 1] = v[i], out[4 * i + 2] = w[i], out[4 * i + 3] = -w[i];
+    const bool is_before = w[i] > 0;
+    bounds.u0 = is_before && u[i] < bounds.u0 ? u[i] : bounds.u0;
+    bounds.u1 = is_before && u[i] > bounds.u1 ? u[i] : bounds.u1;
+    bounds.v0 = is_before && v[i] < bounds.v0 ? v[i] : bounds.v0;
+    bounds.v1 = is_before && v[i] > bounds.v1 ? v[i] : bounds.v1;
+    bounds.least = is_before && w[i] < bounds.least ? w[i] : bounds.least;
+    bounds.greatest = is_before && w[i] > bounds.greatest ? w[i] : bounds.greatest;
+    bounds.has_behind |= !is_before;
+  }
+}
+
+VPM_VECTOR_CLONES
+Bounds project_all(const DrawnSolid& solid, const FloatPose& p, const Intrinsics& k, float nearest,
+                   float* out) {
+  Bounds bounds;
+  const auto fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy),
+             cx = static_cast<float>(k.cx), cy = static_cast<float>(k.cy);
+  for (std::size_t first = 0; first < solid.vertices(); first += kBatch) {
+    const auto count = static_cast<int>(std::min<std::size_t>(kBatch, solid.vertices() - first));
+    project_batch(solid, first, count, p, fx, fy, cx, cy, nearest, out + 4 * first, bounds);
+  }
+  return bounds;
+}
+
+// Returns the column or row of pixels whose squares hold the position, from `least` to `most`.
+int pixel_of(double position, int least, int most) {
+  return static_cast<int>(std::clamp(std::floor(position + 0.5), static_cast<double>(least),
+                                     static_cast<double>(most)));
+}
+
+[[gnu::always_inline]] inline Floats lesser(const Floats& a, const Floats& b) {
+  return a < b ? a : b;
+}
+[[gnu::always_inline]] inline HalfFloats lesser(const HalfFloats& a, const HalfFloats& b) {
+  return a < b ? a : b;
+}
+[[gnu::always_inline]] inline HalfFloats greater(const HalfFloats& a, const HalfFloats& b) {
+  return a > b ? a : b;
+}
+
+// Widens the ranges of the first `count` of four pixels.
+[[gnu::always_inline]] inline void widen_four(float* pixels, const Floats& ranges) {
+  store(lesser(load<Floats>(pixels), ranges), pixels);
+}
+
+struct SmallTriangles {
+  const Triangle* triangles;
+  std::size_t count;
+  const float* vertices;  // four numbers each
+  PixelWindow window;
+  float* ranges;          // two numbers per pixel, and room for kSmallAcross pixels more
+  std::uint32_t* others;  // receives the triangles that are not small
+};
+
+// Returns the number of `others`.
+VPM_VECTOR_CLONES
+std::size_t draw_small(const SmallTriangles& t) {
+  const auto width = static_cast<float>(t.window.width()),
+             height = static_cast<float>(t.window.height());
+  const std::size_t stride = 2 * static_cast<std::size_t>(t.window.width());
+  const float u0 = static_cast<float>(t.window.u0) - 0.5F,
+              v0 = static_cast<float>(t.window.v0) - 0.5F;
+  float only[kSmallAcross][kLanes];  // 0 for as many pixels, then infinite
+  for (int n = 0; n < kSmallAcross; ++n)
+    for (int i = 0; i < kLanes; ++i) only[n][i] = i / 2 <= n ? 0 : kNone;
+  std::size_t others = 0;
+  for (std::size_t k = 0; k < t.count; ++k) {
+    const auto& [a, b, c] = t.triangles[k];
+    const auto at = [&](std::uint32_t vertex) __attribute__((always_inline)) {
+      return load<HalfFloats>(t.vertices + 4 * std::size_t{vertex});
+    };
+    const HalfFloats p = at(a), q = at(b), r = at(c);
+    const HalfFloats low = lesser(lesser(p, q), r), high = greater(greater(p, q), r);
+    if (!(low[2] > 0)) {  // a corner is not before the camera
+      if (high[2] > 0) t.others[others++] = static_cast<std::uint32_t>(k);
+      continue;
+    }
+    const float left = low[0] - u0 - kPad, right = high[0] - u0 + kPad, top = low[1] - v0 - kPad,
+                bottom = high[1] - v0 + kPad;
+    if (!((right >= 0) & (bottom >= 0) & (left < width) & (top < height))) continue;
+    if (!((left >= 0) & (top >= 0) & (right < width) & (bottom < height))) {
+      t.others[others++] = static_cast<std::uint32_t>(k);
+      continue;
+    }
+    const int first = static_cast<int>(left), last = static_cast<int>(right),
+              first_row = static_cast<int>(top), last_row = static_cast<int>(bottom);
+    if ((last - first >= kSmallAcross) | (last_row - first_row >= kSmallDown)) {
+      t.others[others++] = static_cast<std::uint32_t>(k);
+      continue;
+    }
+    const float far = low[2], near = low[3];
+    const Floats ranges =
+        Floats{far, near, far, near, far, near, far, near} + load<Floats>(only[last - first]);
+    float* pixels = t.ranges + static_cast<std::size_t>(first_row) * stride +
+                    2 * static_cast<std::size_t>(first);
+    for (int v = first_row; v <= last_row; ++v, pixels += stride) widen_four(pixels, ranges);
+  }
+  return others;
+}
+
+// Sets each of `count` numbers to the lesser of itself and of the one that is as far along
+// `further`, which lies behind `numbers`.
+[[gnu::always_inline]] inline void take_lesser(float* numbers, const float* further,
+                                               std::size_t count) {
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes)
+    store(lesser(load<Floats>(numbers + i), load<Floats>(further + i)), numbers + i);
+  for (; i < count; ++i) numbers[i] = further[i] < numbers[i] ? further[i] : numbers[i];
+}
+
+// Sets each number to the least of `length` numbers that are `step` apart, from itself on; those
+// that have fewer behind them become undefined.
+[[gnu::always_inline]] inline void take_least(float* numbers, std::size_t count, std::size_t step,
+                                              int length) {
+  int taken = 1;  // numbers of which each is the least by now
+  while (taken < length) {
+    const int more = std::min(taken, length - taken);
+    const std::size_t apart = static_cast<std::size_t>(more) * step;
+    if (apart >= count) return;
+    take_lesser(numbers, numbers + apart, count - apart);
+    taken += more;
+  }
+}
+
+VPM_VECTOR_CLONES
+void take_least_below(float* numbers, std::size_t width, std::size_t height, int length) {
+  take_least(numbers, 2 * width * height, 2 * width, length);
+}
+
+VPM_VECTOR_CLONES
+void take_least_beside(float* numbers, std::size_t width, std::size_t height, int length) {
+  for (std::size_t v = 0; v < height; ++v)
+    take_least(numbers + 2 * width * v, 2 * width, 2, length);
+}
+
+// A corner of a triangle in the image, pixels.
+struct Corner {
+  double u, v;
+};
+
+// Widens [low, high] by the places of an edge in rows from `top` to `bottom`.
+void add_edge(const Corner& a, const Corner& b, double top, double bottom, double& low,
+              double& high) {
+  const Corner &up = a.v <= b.v ? a : b, &down = a.v <= b.v ? b : a;
+  if (down.v < top || up.v > bottom) return;
+  const auto at = [&](double v) {
+    if (v <= up.v) return up.u;
+    if (v >= down.v) return down.u;
+    return up.u + (v - up.v) / (down.v - up.v) * (down.u - up.u);
+  };
+  const double first = at(top), last = at(bottom);
+  low = std::min({low, first, last});
+  high = std::max({high, first, last});
+}
+
+}  // namespace
+
+PixelWindow common(const PixelWindow& a, const PixelWindow& b) {
+  return {std::max(a.u0, b.u0), std::max(a.v0, b.v0), std::min(a.u1, b.u1), std::min(a.v1, b.v1)};
+}
+
+DrawnSolid::DrawnSolid(const SolidSurface& surface)
+    : triangles_(surface.tree().triangles()),
+      center_(surface.center_of_mass()),
+      reach_(surface.reach()) {
+  for (const Vec3& vertex : surface.tree().vertices()) {
+    x_.push_back(static_cast<float>(vertex.x));
+    y_.push_back(static_cast<float>(vertex.y));
+    z_.push_back(static_cast<float>(vertex.z));
+  }
+}
+
+PixelWindow SolidImage::project(const DrawnSolid& solid, const Pose& to_camera, const Intrinsics& k,
+                                const PixelWindow& most) {
+  solid_ = &solid;
+  to_camera_ = {to_camera.rotation, to_camera * solid.center()};
+  k_ = k;
+  nearest_depth_ = kNearestPart * solid.reach();
+  greatest_inverse_ = least_inverse_ = 0;
+  has_behind_ = false;
+  vertices_.clear();
+  // Beyond these no float places a vertex, and no camera measures.
+  constexpr double kFarthest = 0x1p60;
+  if (!(norm(to_camera_.translation) + solid.reach() < kFarthest)) return {};
+  vertices_.resize(solid.vertices());
+  const Bounds bounds = project_all(solid, rounded(to_camera_), k,
+                                    static_cast<float>(nearest_depth_), &vertices_.data()->u);
+  greatest_inverse_ = bounds.greatest;
+  has_behind_ = bounds.has_behind;
+  if (!(bounds.greatest > 0)) return {};
+  least_inverse_ = bounds.least;
+  if (bounds.has_behind) return most;
+  const float pad = 2 * kPad;
+  return common(most, {pixel_of(bounds.u0 - pad, most.u0, most.u1),
+                       pixel_of(bounds.v0 - pad, most.v0, most.v1),
+                       pixel_of(bounds.u1 + pad, most.u0 - 1, most.u1 - 1) + 1,
+                       pixel_of(bounds.v1 + pad, most.v0 - 1, most.v1 - 1) + 1});
+}
+
+void SolidImage::draw(const PixelWindow& window) {
+  window_ = window;
+  moved_ = 0;
+  const std::size_t pixels =
+      static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+  ranges_.assign(pixels + kLanes, DrawnRange{});
+  if (vertices_.empty()) return;
+  const std::vector<Triangle>& triangles = solid_->triangles();
+  others_.resize(triangles.size());
+  const std::size_t others = draw_small({triangles.data(), triangles.size(), &vertices_.data()->u,
+                                         window, &ranges_.data()->farthest, others_.data()});
+  for (std::size_t k = 0; k < others; ++k) draw_clipped(triangles[others_[k]]);
+}
+
+Vec3 SolidImage::in_camera(std::uint32_t vertex) const {
+  return to_camera_ * Vec3{solid_->x()[vertex], solid_->y()[vertex], solid_->z()[vertex]};
+}
+
+// Cuts off what is not before the camera, and draws the rest.
+void SolidImage::draw_clipped(const Triangle& triangle) {
+  Vec3 corners[4];
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 a = in_camera(triangle[static_cast<std::size_t>(i)]),
+               b = in_camera(triangle[static_cast<std::size_t>((i + 1) % 3)]);
+    const bool is_a_before = a.z > nearest_depth_, is_b_before = b.z > nearest_depth_;
+    if (is_a_before) corners[count++] = a;
+    if (is_a_before == is_b_before) continue;
+    // From the same end for both triangles of an edge.
+    const Vec3 &before = is_a_before ? a : b, &behind = is_a_before ? b : a;
+    const double part = (nearest_depth_ - before.z) / (behind.z - before.z);
+    corners[count] = before + part * (behind - before);
+    corners[count++].z = nearest_depth_;
+  }
+  for (int i = 2; i < count; ++i) draw_large({corners[0], corners[i - 1], corners[i]});
+}
+
+// Draws a triangle row by row: each pixel whose square it meets gets the range of inverse depth
+// that its plane, which is affine there, has in the square, within that of the corners.
+void SolidImage::draw_large(const Vec3 (&x)[3]) {
+  Corner p[3];
+  double inverse[3];
+  for (int i = 0; i < 3; ++i) {
+    inverse[i] = 1 / x[i].z;
+    p[i] = {k_.fx * (x[i].x * inverse[i]) + k_.cx, k_.fy * (x[i].y * inverse[i]) + k_.cy};
+  }
+  const double least = std::min({inverse[0], inverse[1], inverse[2]}),
+               greatest = std::max({inverse[0], inverse[1], inverse[2]});
+  const double area = (p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[2].u - p[0].u) * (p[1].v - p[0].v);
+  double along_u = 0, along_v = 0, half = HUGE_VAL;  // seen from the side: all of its range
+  if (std::abs(area) > 1e-9) {
+    const double db = inverse[1] - inverse[0], dc = inverse[2] - inverse[0];
+    along_u = (db * (p[2].v - p[0].v) - dc * (p[1].v - p[0].v)) / area;
+    along_v = (dc * (p[1].u - p[0].u) - db * (p[2].u - p[0].u)) / area;
+    half = (0.5 + kPad) * (std::abs(along_u) + std::abs(along_v));
+  }
+  const double top = std::min({p[0].v, p[1].v, p[2].v}),
+               bottom = std::max({p[0].v, p[1].v, p[2].v});
+  const int first_row = pixel_of(top - kPad, window_.v0, window_.v1),
+            last_row = pixel_of(bottom + kPad, window_.v0 - 1, window_.v1 - 1);
+  for (int v = first_row; v <= last_row; ++v) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int i = 0; i < 3; ++i)
+      add_edge(p[i], p[(i + 1) % 3], v - 0.5 - kPad, v + 0.5 + kPad, low, high);
+    if (!(low <= high)) continue;
+    const int first = pixel_of(low - kPad, window_.u0, window_.u1),
+              last = pixel_of(high + kPad, window_.u0 - 1, window_.u1 - 1);
+    DrawnRange* const row = ranges_.data() + first_of(v) - window_.u0;
+    for (int u = first; u <= last; ++u) {
+      const double middle = inverse[0] + along_u * (u - p[0].u) + along_v * (v - p[0].v);
+      // An undefined middle, infinity times 0, leaves the corners' range.
+      const double far = middle - half > least ? std::min(middle - half, greatest) : least;
+      const double near = middle + half < greatest ? std::max(middle + half, least) : greatest;
+      row[u].farthest = std::min(row[u].farthest, static_cast<float>(far));
+      row[u].nearest = std::min(row[u].nearest, static_cast<float>(-near));
+    }
+  }
+}
+
+void SolidImage::widen(int across, int down) {
+  float* const numbers = &ranges_.data()->farthest;
+  const auto width = static_cast<std::size_t>(window_.width()),
+             height = static_cast<std::size_t>(window_.height());
+  take_least_below(numbers, width, height, 2 * down + 1);
+  take_least_beside(numbers, width, height - 2 * static_cast<std::size_t>(down), 2 * across + 1);
+  // Each range is now that of the pixels to its right and below, so it belongs to their middle.
+  moved_ = static_cast<std::size_t>(down) * width + static_cast<std::size_t>(across);
+}
+
+void SolidImage::keep(float low, float high) {
+  for (DrawnRange& range : ranges_)
+    if (!(-range.nearest > low && -range.nearest <= high)) range = {};
+}
+
+bool SolidImage::is_near(double depth, double margin, const PixelWindow& image) const {
+  if (vertices_.empty() || (!has_behind_ && greatest_inverse_ * depth < 1)) return false;
+  // A place that is seen has a slope between those of the image's sides, and a depth of at most
+  // `margin` more than the vertex that it belongs to.
+  const double left = std::min(0.0, (image.u0 - 0.5 - k_.cx) / k_.fx),
+               right = std::max(0.0, (image.u1 - 0.5 - k_.cx) / k_.fx),
+               top = std::min(0.0, (image.v0 - 0.5 - k_.cy) / k_.fy),
+               bottom = std::max(0.0, (image.v1 - 0.5 - k_.cy) / k_.fy);
+  std::vector<std::uint8_t> beyond;  // sides of what is near that a vertex lies beyond
+  for (std::uint32_t k = 0; k < vertices_.size(); ++k) {
+    const Vec3 x = in_camera(k);
+    const double z = x.z + margin;
+    beyond.push_back(static_cast<std::uint8_t>(
+        (z < 0 ? 1 : 0) | (x.z > depth ? 2 : 0) | (x.x + margin < left * z ? 4 : 0) |
+        (x.x - margin > right * z ? 8 : 0) | (x.y + margin < top * z ? 16 : 0) |
+        (x.y - margin > bottom * z ? 32 : 0)));
+  }
+  return std::ranges::any_of(solid_->triangles(), [&](const Triangle& t) {
+    return (beyond[t[0]] & beyond[t[1]] & beyond[t[2]]) == 0;
+  });
+}
+
+}  // namespace vpm
