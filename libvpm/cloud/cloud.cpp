@@ -71,6 +71,23 @@ Cloud without_camera(Cloud cloud) {
   return cloud;
 }
 
+Cloud without_removed(Cloud cloud) {
+  const std::vector<float>& depth = cloud.sensor->depth.depth;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < cloud.size(); ++k) {
+    if (is_removed(depth[cloud.pixels[k]])) continue;
+    cloud.positions[kept] = cloud.positions[k];
+    cloud.normals[kept] = cloud.normals[k];
+    cloud.radii[kept] = cloud.radii[k];
+    cloud.pixels[kept++] = cloud.pixels[k];
+  }
+  cloud.positions.resize(kept);
+  cloud.normals.resize(kept);
+  cloud.radii.resize(kept);
+  cloud.pixels.resize(kept);
+  return cloud;
+}
+
 void validate(const Camera& camera, const std::string& name) {
   const Intrinsics& k = camera.intrinsics;
   if (!are_sound(k))

@@ -36,6 +36,8 @@ struct Cloud {
 
 // Returns the cloud without its sensor and pixels.
 Cloud without_camera(Cloud cloud);
+// Returns the cloud without the points at pixels that were removed from its sensor's image.
+Cloud without_removed(Cloud cloud);
 
 // Throws Error(refused) if no query could use the cloud, naming the first offending point: vectors
 // of different sizes, positions or radii not finite, radii < 0, normals not of unit length

@@ -134,6 +134,15 @@ std::string why_nothing(const RawDepth& raw, const Intrinsics& k, const DepthRea
          "and `depth_scale` tell what they mean";
 }
 
+// Takes out what the options do; of points there is nothing to be taken.
+void remove_solids(ImportedScan& scan, const std::string& name, const ImportOptions& options) {
+  if (!options.remove) return;
+  if (!scan.image)
+    refuse("points without a camera: `remove` takes pixels out of depth images", name,
+           "give the depth image");
+  scan.removed = options.remove(*scan.image, options.time);
+}
+
 }  // namespace
 
 ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose& to_world,
@@ -164,11 +173,16 @@ ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& na
                    : scan_of_image(parse_depth(format, bytes, name, options), name, options);
   if (!options.channel.empty() && format != ScanFormat::exr)
     scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
+  remove_solids(scan, name, options);
   return scan;
 }
 
 NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name) {
-  const std::size_t measured = scan.image->depth.depth.size() - scan.invalid;
+  const std::size_t measured = scan.image->depth.depth.size() - scan.invalid - scan.removed;
+  if (measured == 0)
+    return NothingMeasured(
+        "all of its " + std::to_string(scan.removed) + " measured pixels are removed with solids",
+        name);
   return NothingMeasured("none of its " + std::to_string(measured) +
                              " measured pixels has neighbours enough for a normal",
                          name);
@@ -182,13 +196,15 @@ ImportedCloud cloud_of(ImportedScan scan, const std::string& name, const ImportO
   imported.width = scan.width;
   imported.height = scan.height;
   imported.invalid = scan.invalid;
+  imported.removed = scan.removed;
   imported.intrinsics_recovered = scan.intrinsics_recovered;
   imported.normals_estimated = scan.image.has_value();
   if (scan.image) {
     const auto& [camera, depth] = *scan.image;
     imported.cloud = make_cloud(depth, camera, options.normals);
     if (imported.cloud.size() == 0) throw nothing_with_normal(scan, name);
-    imported.without_normal = depth.depth.size() - scan.invalid - imported.cloud.size();
+    imported.without_normal =
+        depth.depth.size() - scan.invalid - scan.removed - imported.cloud.size();
     append(imported.remarks, improbable_intrinsics(camera));
   } else {
     imported.cloud = std::move(scan.points);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,6 +35,10 @@ struct ImportOptions {
   std::optional<Pose> to_world;  // if unset, a PCD's VIEWPOINT, or identity for this library's axes
   bool flip = false;             // turns the normals of points that have some and no camera
   NormalOptions normals;
+  // Takes known solids out of the depth image that a camera took at `time`, s, and returns the
+  // number of pixels. Points without a camera are refused then.
+  std::function<std::size_t(CloudSensor& image, double time)> remove;
+  double time = 0;
 };
 
 struct ImportedCloud {
@@ -41,6 +46,7 @@ struct ImportedCloud {
   // Size of the image, or number of points and 1.
   std::uint32_t width = 0, height = 0;
   std::size_t invalid = 0;         // pixels or points without measurement
+  std::size_t removed = 0;         // measured pixels that ImportOptions::remove took out
   std::size_t without_normal = 0;  // measured, but not in the cloud
   bool intrinsics_recovered = false;
   bool normals_estimated = false;  // false: taken from the file
@@ -60,7 +66,7 @@ struct ImportedScan {
   std::optional<CloudSensor> image;
   Cloud points;  // set if there is no image
   std::uint32_t width = 0, height = 0;
-  std::size_t invalid = 0;
+  std::size_t invalid = 0, removed = 0;
   std::size_t without_normal = 0;  // counts points
   bool intrinsics_recovered = false;
   bool looks_coded = false;  // values look coded, as remarks tell, so that depths may be others

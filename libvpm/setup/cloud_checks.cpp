@@ -14,7 +14,7 @@ CloudChecks::CloudChecks(std::vector<const ToolModel*> tools, const Cloud& cloud
       poses_(tools_, source_of(cloud), [this](std::size_t) { return scene_; }) {
   if (sizes_) return;
   if (!cloud.sensor) enclosed_.emplace(tools_, cloud);
-  if (cloud.sensor && measured) measured_.emplace(tools_, *measured, cloud.sensor->camera.to_world);
+  if (cloud.sensor && measured) measured_.emplace(tools_, *measured, *cloud.sensor);
 }
 
 void CloudChecks::see(const Pose& pose, std::size_t k, const Result& result) {

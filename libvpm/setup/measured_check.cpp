@@ -21,7 +21,8 @@ std::string named(const std::vector<std::size_t>& numbers) {
 
 }  // namespace
 
-ContinuedDepth::ContinuedDepth(const DepthSurface& surface, double length)
+ContinuedDepth::ContinuedDepth(const DepthSurface& surface, std::span<const std::size_t> removed,
+                               double length)
     : k_(surface.k), width_(surface.width), height_(surface.height), length_(length) {
   depth_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   for (std::int32_t v = 0; v < height_; ++v) {
@@ -34,6 +35,7 @@ ContinuedDepth::ContinuedDepth(const DepthSurface& surface, double length)
     continue_line([&](std::int32_t u) -> double& { return at(u, v); }, width_, k_.fx* length);
   for (std::int32_t u = 0; u < width_; ++u)
     continue_line([&](std::int32_t v) -> double& { return at(u, v); }, height_, k_.fy* length);
+  for (const std::size_t pixel : removed) depth_[pixel] = 0;
 }
 
 template <class At>
@@ -69,6 +71,16 @@ double ContinuedDepth::toward(Vec3 place) const {
   return depth_[row * static_cast<std::size_t>(width_) + column];
 }
 
+MeasuredCheck::MeasuredCheck(std::span<const ToolModel* const> tools, const DepthSurface& surface,
+                             const CloudSensor& sensor)
+    : tools_(tools),
+      surface_(surface),
+      camera_to_world_(sensor.camera.to_world),
+      seen_(tools.size()) {
+  for (std::size_t k = 0; k < sensor.depth.depth.size(); ++k)
+    if (is_removed(sensor.depth.depth[k])) removed_.push_back(k);
+}
+
 bool MeasuredCheck::is_unmeasured(const ContinuedDepth& continued, const ToolPose& at) const {
   constexpr double kLittle = 1e-3;  // part of the tool's volume
   const ToolModel& model = *tools_[at.tool];
@@ -97,7 +109,7 @@ MeasuredCheck::Found MeasuredCheck::found() const {
   if (found.poses == 0) return found;
   double reach = 0;
   for (const ToolModel* const model : tools_) reach = std::max(reach, model->radius);
-  const ContinuedDepth continued(surface_, 2 * reach);
+  const ContinuedDepth continued(surface_, removed_, 2 * reach);
   for (const ToolPose& at : poses_.kept()) {
     if (!is_unmeasured(continued, at)) continue;
     ++found.unmeasured;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/setup/even_sample.h"
@@ -15,10 +16,10 @@
 namespace vpm {
 
 // Depths of an image, continued to where nothing was measured: across holes to the farther side,
-// and as far as a tool is long where a side is open.
+// and as far as a tool is long where a side is open; not to the pixels `removed`.
 class ContinuedDepth {
  public:
-  ContinuedDepth(const DepthSurface& surface, double length);
+  ContinuedDepth(const DepthSurface& surface, std::span<const std::size_t> removed, double length);
 
   // Returns the depth in the direction of a place in camera coordinates, also next to the image; 0
   // where none is near.
@@ -42,10 +43,9 @@ class ContinuedDepth {
 
 class MeasuredCheck {
  public:
-  // Keeps references to the tools and to the image that the surface shows.
+  // Keeps references to the tools and to the image of the sensor that the surface shows.
   MeasuredCheck(std::span<const ToolModel* const> tools, const DepthSurface& surface,
-                const Pose& camera_to_world)
-      : tools_(tools), surface_(surface), camera_to_world_(camera_to_world), seen_(tools.size()) {}
+                const CloudSensor& sensor);
 
   // Notes a pose of the k-th tool.
   void see(const Pose& pose, std::size_t k) { poses_.add({pose, k, seen_[k]++}); }
@@ -72,7 +72,8 @@ class MeasuredCheck {
   std::span<const ToolModel* const> tools_;
   DepthSurface surface_;
   Pose camera_to_world_;
-  std::vector<std::size_t> seen_;  // poses of each tool so far
+  std::vector<std::size_t> removed_;  // pixels of known solids, of which nobody expects more
+  std::vector<std::size_t> seen_;     // poses of each tool so far
   EvenSample<ToolPose> poses_;
 };
 

@@ -293,21 +293,4 @@ std::vector<std::size_t> DepthRemover::beside_removed_alone(std::span<const floa
   return alone;
 }
 
-Cloud without_removed(Cloud cloud) {
-  const std::vector<float>& depth = cloud.sensor->depth.depth;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < cloud.size(); ++k) {
-    if (is_removed(depth[cloud.pixels[k]])) continue;
-    cloud.positions[kept] = cloud.positions[k];
-    cloud.normals[kept] = cloud.normals[k];
-    cloud.radii[kept] = cloud.radii[k];
-    cloud.pixels[kept++] = cloud.pixels[k];
-  }
-  cloud.positions.resize(kept);
-  cloud.normals.resize(kept);
-  cloud.radii.resize(kept);
-  cloud.pixels.resize(kept);
-  return cloud;
-}
-
 }  // namespace vpm

@@ -62,7 +62,4 @@ class DepthRemover {
   std::vector<RemovedSolid> found_;
 };
 
-// Returns the cloud without the points at pixels that were removed from its depth image.
-Cloud without_removed(Cloud cloud);
-
 }  // namespace vpm

@@ -2,22 +2,40 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "libvpm/import/import_cloud.h"
 #include "tools/common/import_arguments.h"
 #include "tools/common/program.h"
+#include "tools/common/removal.h"
 
 namespace vpm::tools {
 
 struct Arguments {
   std::string depth, output, report, export_path, view;
-  std::string camera_poses;  // of a recording
-  double frame_rate = 30;    // frames per second of a recording whose names have numbers
+  std::string camera_poses;         // of a recording
+  double frame_rate = 30;           // frames per second of a recording whose names have numbers
+  std::vector<std::string> remove;  // solids, each FILE or FILE@POSE
+  std::string remove_margin;
   ImportArguments import;
 };
+
+// Solids of --remove, at their poses, and their margin.
+struct RemovedSolids {
+  Removal removal;
+  RemovalMargin margin;
+
+  RemovedSolids(const Program& program, const Arguments& arguments);
+  void say(const Program& program) const { removal.say(program, words_of(margin)); }
+};
+
+// Reads the solids of --remove, if there are any, and has `options` take them out of each image.
+std::unique_ptr<RemovedSolids> remove_solids(const Program& program, const Arguments& arguments,
+                                             ImportOptions& options);
 
 // Returns who made a cloud of these bytes with these options, for its file. The names of files in
 // the options are replaced by the numbers that they stand for.

@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/file/checksum.h"
@@ -16,6 +18,7 @@
 #include "tools/common/import_arguments.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/common/solid_argument.h"
 #include "tools/normals/arguments.h"
 #include "tools/normals/scan_view.h"
 
@@ -36,6 +39,20 @@ void declare(CLI::App& app, Arguments& a) {
                  "Write a page (.html) here that shows surface, normals and unset pixels in a "
                  "browser");
   declare(app, a.import);
+  begin_group(app, "Known solids");
+  app.add_option(
+         "--remove", a.remove,
+         "Take this solid, a tool model (.vpmg) or mesh at its pose in the world, out of the "
+         "depth image: the robot is no obstacle, and what it hides is unseen. May be given "
+         "several times")
+      ->allow_extra_args(false)
+      ->option_text("FILE[@TX,TY,TZ,QX,QY,QZ,QW]");
+  app.add_option("--remove-margin", a.remove_margin,
+                 "How far these solids may have been from there, in m: a number, or "
+                 "time=S,speed=M/S,calibration=M for the time by which the image may be late times "
+                 "their speed, and the error of the camera's pose; 0 if not given")
+      ->join(',')
+      ->option_text("M or ERRORS");
   begin_group(app, "Recordings", Group::rare);
   app.add_option("--camera-poses", a.camera_poses,
                  "For a recording, the path of the camera: TUM text or a pose per frame; else "
@@ -54,7 +71,9 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (!a.camera_poses.empty())
     refuse_usage("--camera-poses is for a recording: give one frame's pose by --camera-pose");
   if (!a.export_path.empty()) check_points_path(a.export_path);
-  check_files({a.depth},
+  std::vector<std::string> inputs{a.depth};
+  for (const std::string& text : a.remove) inputs.push_back(solid_from_text(text, "--remove").name);
+  check_files(inputs,
               {{"--output", a.output, file::Kind::cloud},
                {"--report", a.report, std::nullopt, OutputForm::json},
                {"--export", a.export_path, std::nullopt},
@@ -69,6 +88,7 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
                         {"invalid", imported.invalid},
                         {"without_normal", imported.without_normal},
                         {"seconds", seconds}};
+  if (!a.remove.empty()) report["removed"] = imported.removed;
   if (imported.normals_estimated) {
     report["method"] = a.import.method;
     report["window"] = a.import.window;
@@ -126,14 +146,22 @@ void run(const Program& program, const Arguments& a) {
   if (is_recording(a)) return run_recording(program, a);
   check(a, program.common());
   if (!a.view.empty()) view::check_available();
-  const ImportOptions options = import_options(program, a.import, a.depth);
+  ImportOptions options = import_options(program, a.import, a.depth);
+  const auto removed = remove_solids(program, a, options);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);
-  ImportedCloud imported = import_cloud(bytes, name, options);
+  ImportedCloud imported;
+  try {
+    imported = import_cloud(bytes, name, options);
+  } catch (const NothingMeasured&) {  // maybe since a solid hides all
+    if (removed) removed->say(program);
+    throw;
+  }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say_facts(program, name, imported);
+  if (removed) removed->say(program);
   imported.cloud.provenance = provenance_of(program, options, bytes);
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
@@ -143,6 +171,25 @@ void run(const Program& program, const Arguments& a) {
 }
 
 }  // namespace
+
+RemovedSolids::RemovedSolids(const Program& program, const Arguments& a)
+    : removal(program, a.remove), margin(removal_margin_from_text(a.remove_margin, false)) {}
+
+std::unique_ptr<RemovedSolids> remove_solids(const Program& program, const Arguments& a,
+                                             ImportOptions& options) {
+  if (a.remove.empty() && !a.remove_margin.empty())
+    refuse_usage("--remove-margin needs --remove, which names the solids");
+  if (a.remove.empty()) return nullptr;
+  auto solids = std::make_unique<RemovedSolids>(program, a);
+  const RemovalMargin& m = solids->margin;
+  std::vector<SolidPlace> places;
+  for (const Pose& pose : solids->removal.poses())
+    places.push_back({pose, m.distance + m.seconds * m.speed.value_or(0)});
+  options.remove = [places, &removal = solids->removal](CloudSensor& image, double) {
+    return removal.remove(places, image);
+  };
+  return solids;
+}
 
 nlohmann::json provenance_of(const Program& program, const ImportOptions& options,
                              std::span<const std::byte> bytes) {

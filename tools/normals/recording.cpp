@@ -123,6 +123,7 @@ bool is_recording(const Arguments& a) {
 void run_recording(const Program& program, const Arguments& a) {
   check(a);
   ImportOptions options = import_options(program, a.import);
+  const auto removed = remove_solids(program, a, options);
   const RecordingOptions of_recording{a.frame_rate, a.camera_poses, options.to_world};
   const Recording recording = open_recording(program, a.depth, of_recording, options);
   if (is_ready_cloud(recording.frames.front()))
@@ -138,6 +139,7 @@ void run_recording(const Program& program, const Arguments& a) {
   }
   if (writer.written() == 0)
     refuse(a.depth + ": no frame can be used; the last one: " + writer.last_fault());
+  if (removed) removed->say(program);
   if (recording.has_clock) write_times(a.output, recording, names);
   if (recording.missing > 0)
     program.warn(std::to_string(recording.missing) + " frames of " + a.depth + " are missing");

@@ -270,7 +270,7 @@ Leftover leftover_of(const Arguments& a, const CommonOptions& common) {
 
 void check_names(const Arguments& a, const CommonOptions& common) {
   std::vector<std::string> solids;
-  for (const std::string& text : a.solids) solids.push_back(solid_from_text(text).name);
+  for (const std::string& text : a.solids) solids.push_back(solid_from_text(text, "--solid").name);
   if (std::ranges::count(solids, "-") > 0)
     throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
   if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.pairs == "-") +

@@ -1,5 +1,5 @@
 // The library that reads and packs meshes for vpm-query, a client of vpm::solid.
-#include "tools/query/mesh_plugin.h"
+#include "tools/common/mesh_plugin.h"
 
 #include <vpm/device.h>
 #include <vpm/solid.h>

@@ -19,7 +19,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/length_units.h"
 #include "tools/common/nearest_word.h"
-#include "tools/query/mesh_tool.h"
+#include "tools/common/mesh_tool.h"
 
 namespace vpm::tools {
 namespace {

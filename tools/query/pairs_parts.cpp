@@ -14,8 +14,8 @@
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
-#include "tools/query/mesh_plugin.h"
-#include "tools/query/mesh_tool.h"
+#include "tools/common/mesh_plugin.h"
+#include "tools/common/mesh_tool.h"
 
 namespace vpm::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/view/pose_path.h"
-#include "tools/query/mesh_tool.h"
+#include "tools/common/mesh_tool.h"
 
 namespace vpm::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
-#include "tools/query/mesh_tool.h"
+#include "tools/common/mesh_tool.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
@@ -87,7 +87,7 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
   if (a.view.empty()) return;
   view.emplace(a.view, tools, a.tools, options);
   for (std::size_t k = 0; k < solids.size(); ++k)
-    view->add_solid(solid_from_text(a.solids[k]).name, solids[k]);
+    view->add_solid(solid_from_text(a.solids[k], "--solid").name, solids[k]);
 }
 
 void say(const Program& program, const Remarks& remarks) {

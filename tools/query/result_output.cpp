@@ -105,7 +105,7 @@ nlohmann::json run_of(const Program& program, const Arguments& a) {
     run[option].push_back(hash);
   };
   for (const std::string& tool : a.tools) add("tool", tool);
-  for (const std::string& solid : a.solids) add("solids", solid_from_text(solid).name);
+  for (const std::string& solid : a.solids) add("solids", solid_from_text(solid, "--solid").name);
   add("cloud", a.cloud);
   for (const std::string& poses : a.poses) add("poses", poses);
   add("camera-poses", a.replay.camera_poses);

@@ -1,47 +1,18 @@
 #include "tools/query/solid_scene.h"
 
 #include <vpm/error.h>
-#include <vpm/pose.h>
 #include <vpm/solid.h>
-
-#include <filesystem>
-#include <system_error>
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model.h"
-#include "tools/common/error_text.h"
-#include "tools/query/mesh_tool.h"
 
 namespace vpm::tools {
-namespace {
-
-SolidBody solid_of_model(const std::string& name) {
-  const Tool model = Tool::read(name);
-  try {
-    return SolidBody(model);
-  } catch (const Error& error) {
-    throw Error(error.kind(), error.problem(), name, error.hint());
-  }
-}
-
-}  // namespace
-
-SolidArgument solid_from_text(const std::string& text) {
-  std::error_code fault;
-  const std::size_t at = text.rfind('@');
-  if (at == text.npos || std::filesystem::exists(text, fault)) return {text, {}};
-  return {text.substr(0, at),
-          naming("--solid", [&] { return pose_from_text(text.substr(at + 1)); })};
-}
-
 std::vector<Body> read_solids(const Program& program, const std::vector<std::string>& texts) {
   std::vector<Body> solids;
   for (const std::string& text : texts) {
-    const auto [name, at] = solid_from_text(text);
-    const SolidBody solid =
-        is_mesh_file(name) ? solid_of_mesh(program, name) : solid_of_model(name);
-    solids.emplace_back(solid, at);
+    const auto [name, at] = solid_from_text(text, "--solid");
+    solids.emplace_back(solid_of_file(program, name), at);
   }
   return solids;
 }

@@ -12,18 +12,9 @@
 #include <vector>
 
 #include "tools/common/program.h"
+#include "tools/common/solid_argument.h"
 
 namespace vpm::tools {
-
-// A value of --solid.
-struct SolidArgument {
-  std::string name;
-  Pose at;  // mesh to world
-};
-
-// Takes a value apart at its last @, unless a file has all of it as its name. Throws what
-// pose_from_text throws, naming the option.
-SolidArgument solid_from_text(const std::string& text);
 
 // Reads the solids, models or meshes, and prepares them. Throws Error(refused) also for a model
 // that keeps no surface.

@@ -26,7 +26,8 @@ void* function_of_meshes(const char* name);
 // where they are not built.
 Tool tool_of_mesh(const Program& program, const std::string& path);
 
-// Returns the solid of a mesh, prepared with what forces need. Says and throws the same.
-SolidBody solid_of_mesh(const Program& program, const std::string& path);
+// Returns the solid of a mesh, prepared `with_force` for what forces need, too. Says and throws the
+// same.
+SolidBody solid_of_mesh(const Program& program, const std::string& path, bool with_force);
 
 }  // namespace vpm::tools

@@ -1,4 +1,4 @@
-#include "tools/query/mesh_tool.h"
+#include "tools/common/mesh_tool.h"
 
 #include <dlfcn.h>
 #include <sys/mman.h>
@@ -17,7 +17,7 @@
 #include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
-#include "tools/query/mesh_plugin.h"
+#include "tools/common/mesh_plugin.h"
 
 namespace vpm::tools {
 namespace {
@@ -106,14 +106,14 @@ Tool tool_of_mesh(const Program& program, const std::string& path) {
   return tool;
 }
 
-SolidBody solid_of_mesh(const Program& program, const std::string& path) {
+SolidBody solid_of_mesh(const Program& program, const std::string& path, bool with_force) {
   const auto read_solid = reinterpret_cast<ReadSolid>(function_of_meshes(kReadSolid));
   reinterpret_cast<UseThreads>(function_of_meshes(kUseThreads))(program.common().threads);
   const SolidOptions options;
   Listener listener{program, path};
   std::optional<SolidBody> solid;
   PackingFault fault;
-  if (!read_solid(path.c_str(), &options, true, say_of_mesh, &listener, &solid, &fault))
+  if (!read_solid(path.c_str(), &options, with_force, say_of_mesh, &listener, &solid, &fault))
     throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
   return *solid;
 }
