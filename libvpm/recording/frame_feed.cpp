@@ -26,11 +26,19 @@ ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options
   if (is_ready_cloud(frame)) {
     ImportedScan scan;
     scan.points = read_cloud(frame.path);
+    if (options.remove) {
+      if (!scan.points.sensor)
+        refuse("points without a camera: `remove` takes pixels out of depth images", frame.path,
+               "make clouds of the depth images");
+      scan.removed = options.remove(*scan.points.sensor, frame.time);
+      scan.points = without_removed(std::move(scan.points));
+    }
     scan.image = scan.points.sensor;
     return scan;
   }
   ImportOptions of_frame = options;
   if (frame.camera) of_frame.to_world = frame.camera;
+  of_frame.time = frame.time;
   return import_scan(file::read_all(frame.path), frame.path, of_frame);
 }
 

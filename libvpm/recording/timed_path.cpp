@@ -117,6 +117,18 @@ std::vector<Pose> TimedPath::solids_at(double time) const {
   return poses;
 }
 
+double TimedPath::speed_of_solid(std::size_t k, double time, double within, double reach) const {
+  double fastest = 0;
+  for (std::size_t i = place_of(time - within).from + 1;
+       i < times_.size() && times_[i - 1] <= time + within; ++i) {
+    const Pose &from = solids_[i - 1][k], &to = solids_[i][k];
+    const double turned = norm(rotation_vector(to.rotation * transpose(from.rotation)));
+    const double length = norm(to.translation - from.translation) + reach * turned;
+    fastest = std::max(fastest, length / (times_[i] - times_[i - 1]));
+  }
+  return fastest;
+}
+
 std::optional<PoseGap> TimedPath::improbable_gap() const {
   constexpr double kShortest = 0.5, kMedians = 10;
   PoseGap longest;

@@ -30,6 +30,10 @@ class TimedPath {
   TimedPath(std::vector<double> times, std::vector<Pose> poses)
       : times_(std::move(times)), poses_(std::move(poses)) {}
 
+  // Makes a path of solids alone: needs as many ascending times as lists, all of one length.
+  TimedPath(std::vector<double> times, std::vector<std::vector<Pose>> solids)
+      : times_(std::move(times)), poses_(solids.size()), solids_(std::move(solids)) {}
+
   bool has_times() const { return !times_.empty(); }
   double start() const { return times_.front(); }  // s; needs has_times()
   double end() const { return times_.back(); }
@@ -51,6 +55,10 @@ class TimedPath {
     return solids_.empty() ? std::vector<Pose>{} : solids_[k];
   }
   std::vector<Pose> solids_at(double time) const;
+  // Returns the greatest speed, m/s, from one pose to the next of solid k, of a point at most
+  // `reach`, m, from its mesh's origin, at times at most `within` from `time`, s. Needs
+  // has_times().
+  double speed_of_solid(std::size_t k, double time, double within, double reach) const;
 
   // Returns the longest time without a pose if it is improbable of a sensor: more than half a
   // second, and more than ten times the median.

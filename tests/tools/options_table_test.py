@@ -33,7 +33,7 @@ VALUES = {
     "--max-error": "1%", "--deadline-us": "5", "--coupling": "stiffness=500,damping=5", "--batch": "2", "--rate": "5",
     "--frame-rate": "5", "--frame-latency": "5", "--intrinsics": "1,1,1,1", "--depth-scale": "5", "--method": "pca", "--window": "9",
     "--unit": "mm", "--invalid": "5", "--range": "1,2", "--decode": "rotated", "--channel": "Z", "--axes": "opengl",
-    "--edge-gate": "0.5", "--fail-above": "5", "--contacts": "5", "--repair": "holes", "--unseen": "0.1", "--spheres-out": "s.ply", "--view": "v.html",
+    "--edge-gate": "0.5", "--fail-above": "5", "--contacts": "5", "--repair": "holes", "--unseen": "0.1", "--remove-margin": "0.1", "--spheres-out": "s.ply", "--view": "v.html",
 }
 
 

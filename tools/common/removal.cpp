@@ -32,6 +32,12 @@ std::string number_text(double value) {
   return text;
 }
 
+// Returns the words of a margin, after the largest one where that differs from solid to solid.
+std::string margin_text(const std::string& words, double largest) {
+  const std::string most = number_text(largest) + " m";
+  return words.starts_with(most) ? words : "up to " + most + ", of " + words;
+}
+
 // True if a solid lies in view where the image was measured, and hardly anything measured is there.
 bool explains_nothing(const RemovedSolid& found) {
   constexpr std::size_t kFewest = 50, kShare = 50;  // pixels, and one in so many
@@ -102,9 +108,17 @@ std::size_t Removal::remove(const std::vector<SolidPlace>& places, CloudSensor& 
     found_[k].explained += found.explained;
     found_[k].holds_camera |= found.holds_camera;
   }
+  for (const SolidPlace& place : places) largest_margin_ = std::max(largest_margin_, place.margin);
   ++images_;
   removed_ += removed;
   return removed;
+}
+
+void Removal::begin_counting() {
+  const std::lock_guard lock(mutex_);
+  images_ = removed_ = 0;
+  largest_margin_ = 0;
+  found_.assign(found_.size(), {});
 }
 
 void Removal::say(const Program& program, const std::string& margin) const {
@@ -112,7 +126,7 @@ void Removal::say(const Program& program, const std::string& margin) const {
   if (images_ == 0) return;
   program.note("--remove: " + std::to_string(removed_) + " pixels removed" +
                (images_ > 1 ? " from " + std::to_string(images_) + " images" : "") +
-               ", with a margin of " + margin);
+               ", with a margin of " + margin_text(margin, largest_margin_));
   for (std::size_t k = 0; k < found_.size(); ++k) {
     if (found_[k].holds_camera)
       program.warn("--remove: the camera is inside of " + names_[k] +

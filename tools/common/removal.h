@@ -44,6 +44,9 @@ class Removal {
   // Marks the pixels of the image, and returns the number of those that had been measured.
   std::size_t remove(const std::vector<SolidPlace>& places, CloudSensor& image);
 
+  // Forgets the images so far.
+  void begin_counting();
+
   // Prints how many pixels were removed with which margin, and warns of solids whose poses are
   // probably wrong.
   void say(const Program& program, const std::string& margin) const;
@@ -55,6 +58,7 @@ class Removal {
   std::optional<SolidRemover> remover_;
   mutable std::mutex mutex_;  // of what follows, and of the remover
   std::size_t images_ = 0, removed_ = 0;
+  double largest_margin_ = 0;        // m
   std::vector<RemovedSolid> found_;  // in all images
 };
 

@@ -83,6 +83,7 @@ class FrameWriter {
   void convert(const RecordedFrame& frame, const std::string& name) {
     ImportOptions options = options_;
     if (frame.camera) options.to_world = frame.camera;
+    options.time = frame.time;
     options.depth.looks_for_mistakes = written_ == 0;  // those of one frame are said
     const std::vector<std::byte> bytes = file::read_all(frame.path);
     ImportedCloud imported = import_cloud(bytes, frame.path, options);

@@ -203,6 +203,18 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
   app.add_option("--camera-poses", a.camera_poses,
                  "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
                  "frames, or groundtruth.txt");
+  app.add_option(
+         "--remove", a.remove,
+         "Take known solids, such as the robot and what it holds, out of each frame: a file "
+         "(JSON Lines) that names them and tells their poses. What they hide is unseen")
+      ->option_text("FILE");
+  app.add_option(
+         "--remove-margin", a.remove_margin,
+         "How far these solids may have been from there, in m: a number, or "
+         "time=S,calibration=M for the time by which a frame may be late times the speed of "
+         "each, and the error of the camera's pose; 0 if not given")
+      ->join(',')
+      ->option_text("M or ERRORS");
   app.add_option("--frame-rate", a.frame_rate,
                  "Frames per second, where their names have numbers but no times")
       ->check(number_in(1e-3, 1e6))

@@ -50,6 +50,8 @@ constexpr Row kTable[] = {
     {"--frames", {no, no, no, yes, no, yes, no, no}},
     {"--rate", {no, no, no, yes, no, yes, no, no}},
     {"--camera-poses", {no, no, no, yes, no, yes, no, no}},
+    {"--remove", {no, no, no, yes, no, yes, no, no}},
+    {"--remove-margin", {no, no, no, yes, no, yes, no, no}},
     {"--frame-rate", {no, no, no, yes, no, yes, no, no}},
     {"--frame-latency", {no, no, no, yes, no, yes, no, no}},
     {"--align-starts", {no, no, no, yes, no, yes, no, no}},
@@ -111,6 +113,7 @@ constexpr Need kNeeds[] = {
     {"--coupling", "--stiffness", "give the scene's stiffness in N/m^3"},
     {"--resume", "--output", "name the file of the run that was interrupted"},
     {"--unseen", "--collides", "it says when that is unknown"},
+    {"--remove-margin", "--remove", "it names the solids and their poses"},
 };
 
 struct Words {

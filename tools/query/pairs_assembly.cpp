@@ -18,8 +18,8 @@
 #include "libvpm/recording/pose_reader.h"
 #include "tools/common/error_text.h"
 #include "tools/common/length_units.h"
-#include "tools/common/nearest_word.h"
 #include "tools/common/mesh_tool.h"
+#include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
 namespace {

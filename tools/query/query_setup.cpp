@@ -7,9 +7,9 @@
 
 #include "libvpm/file/stream.h"
 #include "libvpm/view/sphere_files.h"
+#include "tools/common/mesh_tool.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
-#include "tools/common/mesh_tool.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {

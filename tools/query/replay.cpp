@@ -23,6 +23,7 @@
 #include "tools/common/recorded_frames.h"
 #include "tools/query/arguments.h"
 #include "tools/query/coupling.h"
+#include "tools/query/frame_removal.h"
 #include "tools/query/mode.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
@@ -78,6 +79,8 @@ class Replay {
 
  private:
   double start_time() const;
+  // Has frames freed of the solids of --remove, if it is given.
+  void begin_removal();
   void find_first_body();
   void say(const PreparedChange& change);
   void compare_size(const PreparedChange& change);
@@ -101,6 +104,7 @@ class Replay {
   std::size_t tools_;
   ToolPaths paths_;
   ImportOptions import_;
+  std::unique_ptr<FrameRemoval> removal_;  // null without --remove
   Device device_;
   Denoising points_;
   std::vector<Body> solids_;
@@ -146,7 +150,25 @@ Replay::Replay(const QuerySetup& setup, double rate)
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
   schedule_ = {rate, paths_.steps(), start_time(), arguments_.frame_latency,
                arguments_.repeat_frames};
+  begin_removal();
   find_first_body();
+}
+
+void Replay::begin_removal() {
+  if (arguments_.remove.empty()) return;
+  removal_ = std::make_unique<FrameRemoval>(program_, arguments_.remove, arguments_.remove_margin);
+  removal_->take_times(recording_);
+  FrameSchedule schedule(recording_, schedule_);
+  // Frames that repeat are looked at once.
+  for (std::size_t looked_at = 0; looked_at < recording_.frames.size();) {
+    const std::optional<FrameChange> change = schedule.next();
+    if (!change) break;
+    looked_at += change->frames.size();
+    for (const std::size_t frame : change->frames) removal_->check(recording_.frames[frame]);
+  }
+  import_.remove = [removal = removal_.get()](CloudSensor& image, double time) {
+    return removal->remove(image, time);
+  };
 }
 
 double Replay::start_time() const {
@@ -252,6 +274,7 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
+  if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
   scene_.emplace(scene_with(feed_->body(), solids_));
@@ -307,6 +330,7 @@ void Replay::compare_size(const PreparedChange& change) {
 }
 
 void Replay::say_at_end() const {
+  if (removal_) removal_->say(program_);
   if (recording_.missing > 0)
     program_.warn(std::to_string(recording_.missing) + " frames of " + arguments_.frames +
                   " are missing; the loop went on with those before");

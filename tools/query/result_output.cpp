@@ -109,6 +109,7 @@ nlohmann::json run_of(const Program& program, const Arguments& a) {
   add("cloud", a.cloud);
   for (const std::string& poses : a.poses) add("poses", poses);
   add("camera-poses", a.replay.camera_poses);
+  add("remove", a.replay.remove);
   return run;
 }
 

@@ -9,8 +9,8 @@
 namespace vpm::cuda {
 
 // Return the stored inverse depth of a pixel that is not measured, a NaN with the greatest integer
-// as bits, so that it lies within no gate; of one that was removed, which is no hole to be closed, a
-// NaN with the next integer; and of a pixel beyond the image, as on the host (kBeyondImage).
+// as bits, so that it lies within no gate; of one that was removed, which is no hole to be closed,
+// a NaN with the next integer; and of a pixel beyond the image, as on the host (kBeyondImage).
 __device__ __forceinline__ float unmeasured() {
   return __int_as_float(0x7fffffff);
 }

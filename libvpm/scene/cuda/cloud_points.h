@@ -121,8 +121,7 @@ class TileWork {
       const int x = k % kClosedWidth - 1, y = k / kClosedWidth - 1;
       const int u = tile_.u0 + x, v = tile_.v0 + y;
       const float value = arrays_.inverse[tile_.index(x, y)];
-      const bool may_close =
-          !(value > 0) && !is_removed_pixel(value) && tile_.is_in_image(x, y);
+      const bool may_close = !(value > 0) && !is_removed_pixel(value) && tile_.is_in_image(x, y);
       arrays_.closed[k] =
           may_close ? between_neighbors(image, tile_.width, tile_.height, u, v) : value;
     }

@@ -27,7 +27,7 @@ bool mark_candidates(const float* at, std::ptrdiff_t stride, std::uint8_t (&cand
     const auto is_pair = [](float a, float b) { return (a > 0) & (b > 0); };
     candidate[i] =
         is_hole(at[i]) & (is_pair(at[i - 1], at[i + 1]) | is_pair(up[i], down[i]) |
-                        is_pair(up[i - 1], down[i + 1]) | is_pair(up[i + 1], down[i - 1]));
+                          is_pair(up[i - 1], down[i + 1]) | is_pair(up[i + 1], down[i - 1]));
   }
   return true;
 }

@@ -33,7 +33,8 @@ struct SeenImage {
 
   void resize(std::uint32_t width, std::uint32_t height);
   void set_normal(int u, int v, Vec3f normal);
-  // Marks the pixels of rows [begin, end) that were removed, whose inverse depths are taken already.
+  // Marks the pixels of rows [begin, end) that were removed, whose inverse depths are taken
+  // already.
   void take_removed(const DepthImage& depth, int begin, int end);
   // Marks rows [begin, end); threads may mark different ones.
   void mark_rows(int begin, int end);
