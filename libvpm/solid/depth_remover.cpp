@@ -21,6 +21,10 @@ constexpr float kLess = 1 - static_cast<float>(kEdgeGate),
 // place needs.
 constexpr float kOneStep = 2.5F;
 
+// Depth, m, up to which no depth camera measures well, and the part of the image, 1 in so many,
+// that the nearest places may then be off by: widening by more takes longer.
+constexpr double kUnmeasured = 0.1, kLargePart = 8;
+
 struct RowCounts {
   std::uint32_t in_view = 0, hidden = 0, explained = 0;
 };
@@ -169,8 +173,10 @@ void DepthRemover::remove_solid(std::size_t k, const Pose& to_camera, double mar
   const PixelWindow box = image_.project(solids_[k], to_camera, camera.intrinsics,
                                          whole_.grown(whole_.width(), whole_.height()));
   const Spread spread(camera);
-  // Nearer places may be anywhere in the image.
-  const double near = margin * std::max(spread.across / camera.width, spread.down / camera.height);
+  // Nearer places may be anywhere in the image, or in a large part of it where no camera measures.
+  const double anywhere =
+      margin * std::max(spread.across / camera.width, spread.down / camera.height);
+  const double near = std::max(anywhere, std::min(kLargePart * anywhere, kUnmeasured));
   if (margin > 0 && image_.is_near(near, margin, whole_)) take_nearer(near + margin, depth);
   if (box.is_empty()) return;
   const auto pixels_at = [&](double of_metre, double inverse) {
@@ -194,7 +200,8 @@ void DepthRemover::remove_solid(std::size_t k, const Pose& to_camera, double mar
   const SolidImage drawn = image_;
   for (float above = high; above >= image_.least_inverse(); above /= 2) {
     image_ = drawn;
-    image_.keep(above / 2, above);
+    // What is nearer than the nearest step hides places in the same pixels that are not.
+    if (!image_.keep(above / 2, above == high ? kNever : above)) continue;
     image_.widen(pixels_at(spread.across, above), pixels_at(spread.down, above));
     take_range(seen, margin, depth);
   }

@@ -353,9 +353,15 @@ void SolidImage::widen(int across, int down) {
   moved_ = static_cast<std::size_t>(down) * width + static_cast<std::size_t>(across);
 }
 
-void SolidImage::keep(float low, float high) {
-  for (DrawnRange& range : ranges_)
-    if (!(-range.nearest > low && -range.nearest <= high)) range = {};
+bool SolidImage::keep(float low, float high) {
+  bool any = false;
+  for (DrawnRange& range : ranges_) {
+    const bool is_kept = -range.nearest > low && -range.nearest <= high;
+    any |= is_kept;
+    range.farthest = is_kept ? range.farthest : kNone;
+    range.nearest = is_kept ? range.nearest : kNone;
+  }
+  return any;
 }
 
 bool SolidImage::is_near(double depth, double margin, const PixelWindow& image) const {

@@ -71,8 +71,9 @@ class SolidImage {
   // Widens each pixel's range by those of the pixels at most `across` and `down` away. Ranges
   // within as many pixels of the window's sides are undefined then. To be called once after draw().
   void widen(int across, int down);
-  // Empties the pixels whose greatest inverse depth is not in (low, high].
-  void keep(float low, float high);
+  // Empties the pixels whose greatest inverse depth is not in (low, high]. Returns false if all are
+  // empty then.
+  bool keep(float low, float high);
 
   const PixelWindow& window() const { return window_; }
   // Returns the ranges of a row of the window, from its column u0 on.

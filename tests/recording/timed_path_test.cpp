@@ -4,6 +4,7 @@
 
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -135,6 +136,17 @@ TEST_F(ATimedPath, RefusesTimesThatAreNone) {
         "1 0 0 0 0 0 0 1\n0 0 0 0 0 0 1\n", "nan 0 0 0 0 0 0 1\n"})
     EXPECT_THROW(path_of(text), Error) << text;
   EXPECT_THROW(SampledPath(path_of("0 0 0 0 0 0 0 1\n1e9 0 0 0 0 0 0 1\n"), 1000), Error);
+}
+
+// A bar of half a metre that turns by a right angle in a second while it moves at 1 m/s.
+TEST(TimedPath, TellsHowFastSolidsMove) {
+  const Pose turned{rotation_from_vector({0, 0, 1.5707963267948966}), {1, 0, 0}};
+  const TimedPath path({10, 11, 12}, std::vector<std::vector<Pose>>{{Pose{}}, {turned}, {turned}});
+  EXPECT_NEAR(path.speed_of_solid(0, 10.5, 0.1, 0.5), 1 + 0.5 * 1.5707963267948966, 1e-12);
+  EXPECT_NEAR(path.speed_of_solid(0, 10.5, 0.1, 0), 1, 1e-12);
+  EXPECT_EQ(path.speed_of_solid(0, 11.5, 0.1, 0.5), 0);
+  EXPECT_GT(path.speed_of_solid(0, 11.05, 0.1, 0.5), 1);  // it may have been before it stopped
+  EXPECT_EQ(path.speed_of_solid(0, 20, 0.1, 0.5), 0);
 }
 
 }  // namespace

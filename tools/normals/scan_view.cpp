@@ -116,6 +116,7 @@ void write_scan_view(const std::string& path, const std::string& input,
   page.set_origin(cloud.origin);
   page.add_fact("points with normals", std::to_string(cloud.size()));
   page.add_fact("not measured", std::to_string(imported.invalid));
+  if (imported.removed > 0) page.add_fact("removed with solids", std::to_string(imported.removed));
   page.add_fact("measured, no normal", std::to_string(imported.without_normal));
   if (imported.normals_estimated)
     page.add_fact("normals", to_text(options.method) + ", window of " +
