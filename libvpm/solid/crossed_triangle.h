@@ -1,5 +1,5 @@
 // What is summed up of a triangle that the other surface crosses: the part of it inside the other
-// solid, and the other's planes. All lengths in the pair's unit.
+// solid. All lengths in the pair's unit.
 #pragma once
 
 #include <array>
@@ -22,13 +22,9 @@ struct CrossedTriangle {
   WideVec3 mean;
   std::array<WideSum, 6> products;
   int entries = 0;  // of edge b-c: how often it enters less how often it leaves
-  // Depth below the other's triangles that cross this one, weighted by the segments' lengths.
-  // Large triangles, which are cut into cells for that, keep their segments and crossings instead.
-  WideVec3 plane_normal;
-  WideSum plane_offset, weight;
+  // What cuts it, in the pair's lists; kept for forces.
   static constexpr std::uint32_t kEnd = 0xffffffffu;
-  std::uint32_t last_segment = kEnd, last_point = kEnd;  // of the pair's lists
-  bool is_large = false;
+  std::uint32_t last_segment = kEnd, last_point = kEnd;
 
   void add(double sign, Vec3 p, Vec3 q) {
     const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
@@ -47,12 +43,6 @@ struct CrossedTriangle {
     add(-sign, corner[1], place);
   }
   void add_corner_inside() { add(1, corner[1], corner[2]); }
-  // Adds a plane of the other surface, n.x = offset, met along a segment of this length.
-  void add_plane(Vec3 n, double offset, double length) {
-    plane_normal.add(length * n);
-    plane_offset.add(length * offset);
-    weight.add(length);
-  }
   Products products_real() const {
     Products p{};
     for (std::size_t k = 0; k < 6; ++k) p[k] = products[k].real();

@@ -2,6 +2,7 @@
 // other's depth may be taken for linear over each.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -34,20 +35,25 @@ struct DepthCell {
   std::span<const CutSegment> segments;
   std::span<const CutPoint> points;
   bool is_whole() const { return segments.empty() && points.empty(); }
+  double longest_edge2() const {
+    const auto& [a, b, c] = corner;
+    return std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+  }
 };
 
 class DepthCells {
  public:
-  // Halves the cell across its longest edge until no edge is longer than `longest`, and calls
-  // take(cell) for each part that may hold something inside. Halves share the bits of the points
+  // Calls visit(part, state) for the cell, then for its halves, quarters and so on, across their
+  // longest edges, as long as visit returns false; passes over parts that hold nothing inside.
+  // Halves start from the state in which their whole left it. Halves share the bits of the points
   // where segments cross from one to the other, and which corners lie inside follows from these
   // points: so parts add up to the whole. `normal` points out of the triangle, of any length.
-  template <class Take>
-  void run(const DepthCell& cell, Vec3 normal, double longest, const Take& take) {
+  template <class State, class Visit>
+  void run(const DepthCell& cell, Vec3 normal, const State& state, const Visit& visit) {
     segments_.assign(cell.segments.begin(), cell.segments.end());
     points_.assign(cell.points.begin(), cell.points.end());
     normal_ = normal;
-    cut(Part{cell.corner, cell.is_inside, 0, 0}, longest * longest, take);
+    cut(Part{cell.corner, cell.is_inside, 0, 0}, state, visit);
   }
 
  private:
@@ -58,21 +64,19 @@ class DepthCells {
     std::size_t first_segment, first_point;
   };
 
-  template <class Take>
-  void cut(const Part& part, double longest2, const Take& take) {
+  template <class State, class Visit>
+  void cut(const Part& part, State state, const Visit& visit) {
     const std::size_t segments = segments_.size(), points = points_.size();
-    const bool is_whole = part.first_segment == segments && part.first_point == points;
-    if (is_whole && part.is_inside[0] == 0) return;
+    const DepthCell cell{part.corner, part.is_inside,
+                         std::span(segments_).subspan(part.first_segment),
+                         std::span(points_).subspan(part.first_point)};
+    if (cell.is_whole() && part.is_inside[0] == 0) return;
+    if (visit(cell, state)) return;
     const std::size_t edge = longest_edge(part);
-    if (squared_norm(part.corner[(edge + 1) % 3] - part.corner[edge]) <= longest2) {
-      take(DepthCell{part.corner, part.is_inside, std::span(segments_).subspan(part.first_segment),
-                     std::span(points_).subspan(part.first_point)});
-      return;
-    }
     const Vec3 middle = 0.5 * (part.corner[edge] + part.corner[(edge + 1) % 3]);
     const int is_inside = inside_at(middle, edge, part, points);
     for (const bool is_first : {true, false}) {
-      cut(half(part, edge, middle, is_inside, is_first, segments, points), longest2, take);
+      cut(half(part, edge, middle, is_inside, is_first, segments, points), state, visit);
       segments_.resize(segments);
       points_.resize(points);
     }

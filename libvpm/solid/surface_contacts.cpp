@@ -78,10 +78,6 @@ void SurfacePair::join_crossed() {
   if (is_one_contact_) contacts_.assign(1, {});
 }
 
-void SurfacePair::note_whole(std::size_t which, std::uint32_t child) {
-  if (!is_one_contact_) whole_pieces_.push_back({static_cast<std::uint32_t>(which), child, kNone});
-}
-
 void SurfacePair::note_deep_places(const DeepPlace& sampled, const DeepPlace& linear) {
   take_deeper(contacts_[0].deepest[0], sampled);
   take_deeper(contacts_[0].deepest[1], linear);
@@ -108,8 +104,7 @@ void SurfacePair::note_force_of_whole(std::size_t which, const ForceAndTorque& f
   const DeepPlace sampled{depth.value, to_first * place, role},
       linear{depth.value + most - dot(g, place), to_first * tree.vertices()[deepest], role};
   if (is_one_contact_) return note_deep_places(sampled, linear);
-  const auto source = static_cast<std::uint32_t>(whole_pieces_.size() - 1);
-  force_pieces_.push_back({role, false, true, source, force, {{sampled, linear}}});
+  force_pieces_.push_back({role, false, true, whole_, force, {{sampled, linear}}});
 }
 
 // Notes the force on a piece of a crossed triangle, how deep the middle of what is inside of it is,
@@ -150,10 +145,8 @@ void SurfacePair::note_force_of_cell(std::size_t which, const DepthCell& cell,
                                      const LinearPiece& piece, Vec3 normal) {
   unsigned inside = cell.is_whole() ? 7 : 0;
   for (std::size_t k = 0; k < 3; ++k) inside |= cell.is_inside[k] != 0 ? 1u << k : 0;
-  if (face_ == kNone || is_one_contact_) {  // of a triangle that is inside as a whole
-    const auto last = static_cast<std::uint32_t>(whole_pieces_.size() - 1);
-    return note_cut_force(which, last, piece, cell.corner, inside);
-  }
+  if (face_ == kNone || is_one_contact_)  // of a triangle that is inside as a whole
+    return note_cut_force(which, whole_, piece, cell.corner, inside);
   const auto role = static_cast<std::uint32_t>(which);
   std::uint32_t part = parts_->part_of_face(role, face_);
   if (part == kNone && cell.segments.empty()) part = parts_->element_at(role, face_, piece.middle);

@@ -5,15 +5,6 @@
 namespace vpm {
 namespace {
 
-// Pieces of a surface over which the depth is taken for linear: their radius relative to the reach,
-// and half their slab's thickness relative to the depth.
-constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5;
-// Longest edge, relative to the reach, of triangles and cells of triangles for which that holds.
-constexpr double kCell = 0.12;
-// Planes that cross a triangle stand for the depth below them if their mean normal is so long;
-// where they disagree there is a crease.
-constexpr double kAgreeing2 = 0.97;
-
 // Returns a power of two that is larger than any coordinate where the solids can meet.
 double unit_for(double reach, double other_reach) {
   int exponent = 0;
@@ -48,7 +39,12 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
   for (std::size_t role = 0; role < 2; ++role) {
     add_crossed(role);
     add_whole(role);
-    sums_.inner[role] = result(roles_[role], roles_[role].sums);
+    sums_.inner[role].moments = moments_of(roles_[role], roles_[role].sums);
+  }
+  if (with_force_) {
+    add_forces();
+    for (std::size_t role = 0; role < 2; ++role)
+      sums_.inner[role] = result(roles_[role], roles_[role].sums);
   }
   if (with_contacts_) find_contacts();
   return sums_;
@@ -121,19 +117,16 @@ void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triang
   if (!with_force_) return;
   const std::uint32_t number =
       with_contacts_ ? static_cast<std::uint32_t>(parts_->segments().size() - 1) : 0;
-  add_cut(0, of_a, of_b, {start, end, 0, number},
-          std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
-  add_cut(1, of_b, of_a, {end, start, 0, number},
-          std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
+  note_cut(0, of_a, of_b, {start, end, 0, number},
+           std::span(crossing.of_first).first(static_cast<std::size_t>(crossing.first_count)));
+  note_cut(1, of_b, of_a, {end, start, 0, number},
+           std::span(crossing.of_second).first(static_cast<std::size_t>(crossing.second_count)));
 }
 
 // Notes for the force that the other's triangle cuts this one along a segment.
-void SurfacePair::add_cut(std::size_t which, CrossedTriangle& triangle,
-                          const CrossedTriangle& other, CutSegment segment,
-                          std::span<const EdgeCrossing> crossings) {
-  if (!triangle.is_large)
-    return triangle.add_plane(other.normal, dot(other.normal, other.corner[0]),
-                              norm(segment.end - segment.start));
+void SurfacePair::note_cut(std::size_t which, CrossedTriangle& triangle,
+                           const CrossedTriangle& other, CutSegment segment,
+                           std::span<const EdgeCrossing> crossings) {
   Role& role = roles_[which];
   segment.other = roles_[1 - which].crossed_place[other.triangle];
   role.segments.emplace_back(segment, triangle.last_segment);
@@ -145,10 +138,6 @@ void SurfacePair::add_cut(std::size_t which, CrossedTriangle& triangle,
   }
 }
 
-bool SurfacePair::is_large(const Role& role, std::uint32_t triangle) const {
-  return role.tree->longest_edge(triangle) > kCell * role.solid->reach();
-}
-
 CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
                                       const PlacedTriangle& at) {
   if (role.crossed_stamp[triangle] != stamp_) {
@@ -158,7 +147,6 @@ CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
     added.triangle = triangle;
     for (std::size_t k = 0; k < 3; ++k) added.corner[k] = per_unit_ * at.corner[k];
     added.normal = normalized_or_zero(at.normal);
-    added.is_large = with_force_ && is_large(role, triangle);
   }
   return role.crossed[role.crossed_place[triangle]];
 }
@@ -195,18 +183,13 @@ void SurfacePair::mark_crossed(std::size_t which) {
 
 void SurfacePair::add_crossed(std::size_t which) {
   Role& role = roles_[which];
-  face_ = 0;
   for (CrossedTriangle& triangle : role.crossed) {
     if (is_inside(which, role.tree->triangles()[triangle.triangle][2]))
       triangle.add_corner_inside();
-    role.sums.cut.add(flat_moments(triangle.normal, triangle.area.real(), triangle.mean.real(),
-                                   triangle.products_real()));
-    if (with_force_ && triangle.is_large)
-      add_force_of_cells(which, triangle);
-    else if (with_force_)
-      if (const auto piece = add_force_of_cut(which, triangle); piece && with_contacts_)
-        note_force_of_face(which, triangle, *piece);
-    ++face_;
+    const double area = triangle.area.real();
+    role.sums.area.add(area);
+    role.sums.cut.add(
+        flat_moments(triangle.normal, area, triangle.mean.real(), triangle.products_real()));
   }
 }
 
@@ -236,8 +219,8 @@ void SurfacePair::add_whole(std::size_t which) {
       }
       if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
       role.sums.whole.add(scaled(summary.moments, per_unit_));
-      if (with_contacts_) note_whole(which, child);
-      if (with_force_) add_force(which, child);
+      if (with_force_) role.sums.area.add(per_unit_ * per_unit_ * tree.patches()[child].area);
+      note_whole(which, child);
     }
   }
 }
@@ -253,157 +236,31 @@ void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) 
   for (const std::uint32_t v : corners) role.corner_stamp[v] = stamp_, role.is_inside[v] = inside;
   if (!inside) return;
   const auto [a, b, c] = role.tree->corners(triangle);
-  role.sums.whole.add(scaled(triangle_moments(a, b, c), per_unit_));
-  if (with_contacts_) note_whole(which, triangle | kLeaf);
-  if (with_force_) add_force_of_triangle(which, triangle);
+  const SurfaceMoments moments = triangle_moments(a, b, c);
+  role.sums.whole.add(scaled(moments, per_unit_));
+  role.sums.area.add(per_unit_ * per_unit_ * norm(moments.area));
+  note_whole(which, triangle | kLeaf);
+}
+
+// Notes what lies inside as a whole, for its force and its contact.
+void SurfacePair::note_whole(std::size_t which, std::uint32_t child) {
+  if (with_force_ || (with_contacts_ && !is_one_contact_))
+    whole_pieces_.push_back({static_cast<std::uint32_t>(which), child, kNone});
+}
+
+SurfaceMoments SurfacePair::moments_of(const Role& role, const RoleSums& sums) const {
+  SurfaceMoments moments = moved(scaled(sums.whole.real(), unit_), role.to_first);
+  moments.add(scaled(sums.cut.real(), unit_));
+  return moments;
 }
 
 InnerSurface SurfacePair::result(const Role& role, const RoleSums& sums) const {
-  SurfaceMoments moments = moved(scaled(sums.whole.real(), unit_), role.to_first);
-  moments.add(scaled(sums.cut.real(), unit_));
   const double unit3 = unit_ * unit_ * unit_, unit4 = unit3 * unit_;
   const Vec3 force = role.to_first.rotation * (unit3 * sums.whole_wrench.force.real());
   const Vec3 torque = role.to_first.rotation * (unit4 * sums.whole_wrench.torque.real()) +
                       cross(role.to_first.translation, force);
-  return {moments, force + unit3 * sums.cut_wrench.force.real(),
+  return {moments_of(role, sums), force + unit3 * sums.cut_wrench.force.real(),
           torque + unit4 * sums.cut_wrench.torque.real()};
-}
-
-// Adds the force on the part of a surface below the node `top`, all of which is inside the other
-// solid. Descends to parts so small and flat that the depth may be taken for linear over each.
-void SurfacePair::add_force(std::size_t which, std::uint32_t top) {
-  Role& role = roles_[which];
-  const SolidSurface& other = *roles_[1 - which].solid;
-  const double unit3 = per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
-  patches_.assign(1, top);
-  while (!patches_.empty()) {
-    const std::uint32_t k = patches_.back();
-    patches_.pop_back();
-    const SurfaceTree::Patch& patch = role.tree->patches()[k];
-    bool is_small = patch.radius <= kPatchRadius * role.solid->reach();
-    Depth depth;
-    if (is_small) {
-      depth = other.depth(role.to_other * patch.middle);
-      ++sums_.depths;
-      is_small = patch.thickness <= kPatchThickness * depth.value;
-    }
-    if (!is_small) {
-      for (const std::uint32_t child : role.tree->nodes()[k].child) {
-        if (child == kNone) continue;
-        if ((child & kLeaf) != 0)
-          add_force_of_triangle(which, child & ~kLeaf);
-        else
-          patches_.push_back(child);
-      }
-      continue;
-    }
-    depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
-    const ForceAndTorque f = linear_force(patch.moments, depth, patch.middle);
-    const ForceAndTorque added{unit3 * f.force, unit4 * f.torque};
-    role.sums.whole_wrench.add(added.force, added.torque);
-    const SurfaceTree::Summary& below = role.tree->summaries()[k];
-    if (with_contacts_)
-      note_force_of_whole(which, added, depth, patch.middle, patch.radius, below.first, below.end);
-  }
-}
-
-void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangle) {
-  Role& role = roles_[which];
-  const auto [a, b, c] = role.tree->corners(triangle);
-  if (is_large(role, triangle)) {
-    const PlacedTriangle at = placed(role, triangle);
-    DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
-    for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
-    const Vec3 normal = normalized_or_zero(at.normal);
-    face_ = kNone;
-    cells_.run(cell, normal, kCell * role.solid->reach() * per_unit_,
-               [&](const DepthCell& part) { add_force_of_cell(which, part, normal); });
-    return;
-  }
-  const Vec3 middle = (a + b + c) / 3;
-  Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
-  ++sums_.depths;
-  depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
-  const ForceAndTorque f = linear_force(triangle_force_moments(a, b, c), depth, middle);
-  const double unit3 = per_unit_ * per_unit_ * per_unit_;
-  const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
-  role.sums.whole_wrench.add(added.force, added.torque);
-  if (with_contacts_)
-    note_force_of_whole(which, added, depth, middle, role.solid->reach(), triangle, triangle + 1);
-}
-
-// Adds the force on the part of a large crossed triangle, cell by cell.
-void SurfacePair::add_force_of_cells(std::size_t which, const CrossedTriangle& triangle) {
-  Role& role = roles_[which];
-  cut_segments_.clear(), cut_points_.clear();
-  for (std::uint32_t k = triangle.last_segment; k != CrossedTriangle::kEnd;
-       k = role.segments[k].second)
-    cut_segments_.push_back(role.segments[k].first);
-  for (std::uint32_t k = triangle.last_point; k != CrossedTriangle::kEnd; k = role.points[k].second)
-    cut_points_.push_back(role.points[k].first);
-  DepthCell cell{triangle.corner, {}, cut_segments_, cut_points_};
-  for (std::size_t k = 0; k < 3; ++k)
-    cell.is_inside[k] = is_inside(which, role.tree->triangles()[triangle.triangle][k]) ? 1 : 0;
-  cells_.run(cell, triangle.normal, kCell * role.solid->reach() * per_unit_,
-             [&](const DepthCell& part) { add_force_of_cell(which, part, triangle.normal); });
-}
-
-void SurfacePair::add_force_of_cell(std::size_t which, const DepthCell& cell, Vec3 normal) {
-  const auto& [a, b, c] = cell.corner;
-  if (cell.is_whole()) {
-    const Vec3 place = (a + b + c) / 3;
-    const LinearPiece piece =
-        add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, place), place);
-    if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
-    return;
-  }
-  CrossedTriangle part;
-  part.corner = cell.corner, part.normal = normal;
-  for (const auto& [start, end, number, segment] : cell.segments) {
-    part.add_segment(start, end);
-    const CrossedTriangle& other = roles_[1 - which].crossed[number];
-    part.add_plane(other.normal, dot(other.normal, other.corner[0]), norm(end - start));
-  }
-  for (const CutPoint& point : cell.points)
-    if (point.edge == 1) part.add_far_point(point.sign, point.place);
-  if (cell.is_inside[2] != 0) part.add_corner_inside();
-  if (const auto piece = add_force_of_cut(which, part); piece && with_contacts_)
-    note_force_of_cell(which, cell, *piece, normal);
-}
-
-// Returns the depth below the other's surface at a place in the first's frame; in the unit.
-Depth SurfacePair::depth_at(std::size_t which, Vec3 place) {
-  const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
-  Depth depth = roles_[1 - which].solid->depth(to_other * (unit_ * place));
-  ++sums_.depths;
-  depth.value *= per_unit_;
-  depth.gradient = transpose(to_other.rotation) * depth.gradient;
-  return depth;
-}
-
-SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments,
-                                                    const Depth& depth, Vec3 place) {
-  const ForceAndTorque f = linear_force(moments, depth, place);
-  roles_[which].sums.cut_wrench.add(f.force, f.torque);
-  return {depth, place, f, place};
-}
-
-// Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
-// closest point where these disagree. Returns nothing where nothing crosses it.
-std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
-    std::size_t which, const CrossedTriangle& triangle) {
-  const double weight = triangle.weight.real(), area = triangle.area.real();
-  if (!(weight > 0)) return std::nullopt;
-  const Vec3 normal = triangle.plane_normal.real() / weight;
-  Vec3 place;
-  Depth depth{triangle.plane_offset.real() / weight, -normal};
-  if (squared_norm(normal) < kAgreeing2 && area > 0) {
-    place = triangle.mean.real() / area;
-    depth = depth_at(which, place);
-  }
-  LinearPiece piece = add_cut_force(which, triangle.moments(), depth, place);
-  piece.middle = area > 0 ? triangle.mean.real() / area : triangle.corner[0];
-  return piece;
 }
 
 }  // namespace vpm

@@ -76,6 +76,7 @@ class SurfacePair {
   struct RoleSums {
     WideMoments cut, whole;
     WideWrench cut_wrench, whole_wrench;
+    WideSum area;  // for forces
     void subtract(const RoleSums& o);
   };
   // Part of a surface whose depth is taken for linear, and its force; in the first's frame and the
@@ -86,7 +87,21 @@ class SurfacePair {
     ForceAndTorque force;
     Vec3 middle = {};  // of the piece; set for contacts
   };
-  // What contacts are summed from: a node (or kLeaf | triangle) that lies inside as a whole,
+  // A depth that is linear near a place, which tells what to expect beside it.
+  struct Foretold {
+    Depth depth;
+    Vec3 place;
+    bool is_known = false;
+    double at(Vec3 x) const { return depth.value + dot(depth.gradient, x - place); }
+  };
+  // How finely the depth is sampled for the volume at hand; in the unit.
+  struct Precision {
+    double size = 1;      // of pieces that are taken without a second look, relative to the largest
+    double depth = 0;     // error that pieces may have, on average over each,
+    double product = 0;   // or times its area
+    double smallest = 0;  // size of pieces that are never cut
+  };
+  // Node (or kLeaf | triangle) that lies inside as a whole. Contacts are summed from these
   struct WholePiece {
     std::uint32_t role, child;
     std::uint32_t element;  // of the parts
@@ -107,7 +122,7 @@ class SurfacePair {
     std::uint32_t placed_last = SurfaceTree::kNone;  // triangle
     PlacedTriangle last;
     std::vector<CrossedTriangle> crossed;
-    // What cuts the large ones: each entry names the one before of the same triangle.
+    // What cuts them, for forces: each entry names the one before of the same triangle.
     std::vector<std::pair<CutSegment, std::uint32_t>> segments;
     std::vector<std::pair<CutPoint, std::uint32_t>> points;
     std::vector<std::uint32_t> crossed_stamp, crossed_place;  // of triangles
@@ -127,18 +142,29 @@ class SurfacePair {
   void add_crossed(std::size_t role);
   void add_whole(std::size_t role);
   void add_whole_triangle(std::size_t role, std::uint32_t triangle);
-  void add_force(std::size_t role, std::uint32_t node);
-  void add_force_of_triangle(std::size_t role, std::uint32_t triangle);
-  bool is_large(const Role& role, std::uint32_t triangle) const;
-  void add_cut(std::size_t role, CrossedTriangle& triangle, const CrossedTriangle& other,
-               CutSegment segment, std::span<const EdgeCrossing> crossings);
-  void add_force_of_cells(std::size_t role, const CrossedTriangle& triangle);
-  void add_force_of_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
-  std::optional<LinearPiece> add_force_of_cut(std::size_t role, const CrossedTriangle& triangle);
-  Depth depth_at(std::size_t role, Vec3 place);
-  LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Depth& depth,
-                            Vec3 place);
+  void note_cut(std::size_t role, CrossedTriangle& triangle, const CrossedTriangle& other,
+                CutSegment segment, std::span<const EdgeCrossing> crossings);
+  SurfaceMoments moments_of(const Role& role, const RoleSums& sums) const;
   InnerSurface result(const Role& role, const RoleSums& sums) const;
+
+  // Of forces (surface_forces.cpp).
+  void add_forces();
+  Precision precision() const;
+  bool is_precise(double error, double area) const;
+  void add_force_of_crossed(std::size_t role, const CrossedTriangle& triangle);
+  void add_force_of_whole(std::size_t role, std::uint32_t child);
+  void add_force_of_triangle(std::size_t role, std::uint32_t triangle, const Foretold& before);
+  bool add_force_of_patch(std::size_t role, std::uint32_t node, Foretold& foretold);
+  void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal,
+                          const Foretold& foretold);
+  bool add_force_of_whole_cell(std::size_t role, const DepthCell& cell, Vec3 normal, bool is_small,
+                               Foretold& foretold);
+  bool add_force_of_cut_cell(std::size_t role, const DepthCell& cell, Vec3 normal, bool is_small);
+  Foretold plane_across(std::size_t role, std::span<const CutSegment> segments) const;
+  double error_at_border(std::size_t role, std::span<const CutSegment> segments, Vec3 normal,
+                         double most, const Foretold& linear) const;
+  Foretold depth_at(std::size_t role, Vec3 place);
+  LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear);
 
   // Of contacts (surface_contacts.cpp).
   void note_whole(std::size_t role, std::uint32_t child);
@@ -165,7 +191,8 @@ class SurfacePair {
 
   std::array<Role, 2> roles_;
   TreeWalk walk_;
-  std::vector<std::uint32_t> pending_, patches_;  // nodes
+  std::vector<std::uint32_t> pending_;                       // nodes
+  std::vector<std::pair<std::uint32_t, Foretold>> patches_;  // nodes, and what their parents tell
   DepthCells cells_;
   std::vector<CutSegment> cut_segments_;  // of one triangle
   std::vector<CutPoint> cut_points_;
@@ -178,6 +205,8 @@ class SurfacePair {
   std::vector<WholePiece> whole_pieces_;
   std::vector<ForcePiece> force_pieces_;
   std::uint32_t face_ = 0;  // place of the crossed triangle whose force is added; kNone: of a whole
+  std::uint32_t whole_ = 0;  // number of that
+  Precision precision_;
   std::vector<std::uint32_t> number_of_;  // contact, by the elements of the parts that stand for it
   std::vector<std::array<RoleSums, 2>> contact_sums_;
   std::vector<SurfaceContact> contacts_;

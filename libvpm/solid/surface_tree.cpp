@@ -275,6 +275,7 @@ class SurfaceTree::Build {
         const double twice = norm(cross(b - a, c - a));
         area += twice, sum += twice / 3 * (a + b + c);
       }
+      patch.area = 0.5 * area;
       patch.middle = area > 0 ? sum / area : tree_.corners(ranges_[k].begin)[0];
       double radius2 = 0;
       for_vertices(ranges_[k],

@@ -44,6 +44,7 @@ class SurfaceTree {
     Vec3 middle;       // mean of the surface
     double radius;     // of its vertices about the middle
     double thickness;  // half of its slab's
+    double area;       // of the surface
     ForceMoments moments;
   };
 
