@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,17 +44,19 @@ struct DepthCell {
 
 class DepthCells {
  public:
-  // Calls visit(part, state) for the cell, then for its halves, quarters and so on, across their
-  // longest edges, as long as visit returns false; passes over parts that hold nothing inside.
-  // Halves start from the state in which their whole left it. Halves share the bits of the points
-  // where segments cross from one to the other, and which corners lie inside follows from these
-  // points: so parts add up to the whole. `normal` points out of the triangle, of any length.
-  template <class State, class Visit>
-  void run(const DepthCell& cell, Vec3 normal, const State& state, const Visit& visit) {
+  // Integrates over the part of a cell inside by halving cells across their longest edges:
+  // visitor.is_too_large(cell) tells that a cell is halved in any case, visitor.takes(cell) that it
+  // was dealt with. Else visitor.value(cell) is taken by visitor.take(cell, value) if it
+  // is_negligible(value), or if its halves' values say the same: agree(value, first, second), which
+  // leaves in `value` what is better. Else halves are treated alike. They share the bits of the
+  // points where segments cross from one to the other, and which corners lie inside follows from
+  // these points: so parts add up to the whole. `normal` points out of the triangle, of any length.
+  template <class Visitor>
+  void run(const DepthCell& cell, Vec3 normal, Visitor& visitor) {
     segments_.assign(cell.segments.begin(), cell.segments.end());
     points_.assign(cell.points.begin(), cell.points.end());
     normal_ = normal;
-    cut(Part{cell.corner, cell.is_inside, 0, 0}, state, visit);
+    cut(Part{cell.corner, cell.is_inside, 0, 0}, std::optional<typename Visitor::Value>(), visitor);
   }
 
  private:
@@ -64,22 +67,51 @@ class DepthCells {
     std::size_t first_segment, first_point;
   };
 
-  template <class State, class Visit>
-  void cut(const Part& part, State state, const Visit& visit) {
+  DepthCell cell_of(const Part& part) const {
+    return {part.corner, part.is_inside, std::span(segments_).subspan(part.first_segment),
+            std::span(points_).subspan(part.first_point)};
+  }
+  static bool is_outside(const DepthCell& cell) {
+    return cell.is_whole() && cell.is_inside[0] == 0;
+  }
+
+  // Calls take(half, number) for both halves of a part, whose cuts are the last of the lists.
+  template <class Take>
+  void for_halves(const Part& part, const Take& take) {
     const std::size_t segments = segments_.size(), points = points_.size();
-    const DepthCell cell{part.corner, part.is_inside,
-                         std::span(segments_).subspan(part.first_segment),
-                         std::span(points_).subspan(part.first_point)};
-    if (cell.is_whole() && part.is_inside[0] == 0) return;
-    if (visit(cell, state)) return;
     const std::size_t edge = longest_edge(part);
     const Vec3 middle = 0.5 * (part.corner[edge] + part.corner[(edge + 1) % 3]);
     const int is_inside = inside_at(middle, edge, part, points);
-    for (const bool is_first : {true, false}) {
-      cut(half(part, edge, middle, is_inside, is_first, segments, points), state, visit);
+    for (std::size_t k = 0; k < 2; ++k) {
+      take(half(part, edge, middle, is_inside, k == 0, segments, points), k);
       segments_.resize(segments);
       points_.resize(points);
     }
+  }
+
+  template <class Value, class Visitor>
+  void cut(const Part& part, std::optional<Value> value, Visitor& visitor) {
+    const DepthCell cell = cell_of(part);
+    if (is_outside(cell)) return;
+    std::array<std::optional<Value>, 2> halves;
+    if (!visitor.is_too_large(cell)) {
+      if (visitor.takes(cell)) return;
+      if (!value) value = visitor.value(cell);
+      if (visitor.is_negligible(*value)) return visitor.take(cell, *value);
+      std::array<bool, 2> are_outside{};
+      for_halves(part,
+                 [&](const Part& of, std::size_t k) { are_outside[k] = is_outside(cell_of(of)); });
+      // What lies in one half alone is what it was.
+      if (are_outside[0] || are_outside[1]) {
+        halves = {value, value};
+      } else {
+        for_halves(part,
+                   [&](const Part& of, std::size_t k) { halves[k] = visitor.value(cell_of(of)); });
+        if (visitor.agree(*value, *halves[0], *halves[1]))
+          return visitor.take(cell_of(part), *value);
+      }
+    }
+    for_halves(part, [&](const Part& of, std::size_t k) { cut(of, halves[k], visitor); });
   }
 
   static std::size_t longest_edge(const Part& part);

@@ -19,13 +19,14 @@ constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.12;
 constexpr double kAgreeing2 = 0.97;
 // Mean depth, relative to the smaller reach, from which on no piece is looked at twice, and the
 // least one that is told from none.
-constexpr double kDeep = 1.0 / 64, kLeastDepth = 1e-5;
-// Error of the depth of a piece, relative to the mean depth, and of its product with its area,
-// relative to the volume.
-constexpr double kDepthError = 0.03, kProductError = kDepthError / 128;
+constexpr double kDeep = 1.0 / 32, kLeastDepth = 1e-5;
+// Error of the integral of the depth over all that is inside, relative to the volume and to that of
+// the smaller solid; pieces share it by their areas, and none needs less than its part.
+constexpr double kError = 0.02, kErrorOfSmaller = 1e-3, kLeastPart = 1.0 / 256;
 // Size of the smallest pieces relative to the mean depth.
 constexpr double kSmallest = 0.1;
-// Whole pieces so many times as large as the largest are sampled to foretell smaller ones.
+// Pieces up to so many times as large are sampled where samples tell whether they may stay, or to
+// foretell smaller ones.
 constexpr double kForetelling = 4;
 
 double square(double v) {
@@ -38,13 +39,14 @@ double square(double v) {
 SurfacePair::Precision SurfacePair::precision() const {
   const double reach = per_unit_ * std::min(roles_[0].solid->reach(), roles_[1].solid->reach());
   const double flux = sums_.inner[0].moments.flux() + sums_.inner[1].moments.flux();
-  const double volume = per_unit_ * per_unit_ * per_unit_ * flux / 3;
+  const double per_unit3 = per_unit_ * per_unit_ * per_unit_, volume = per_unit3 * flux / 3;
   const double area = std::max(roles_[0].sums.area.real(), roles_[1].sums.area.real());
   if (!(area > 0)) return {};
   const double depth = std::max(volume / area, kLeastDepth * reach);
   const double part = std::min(depth / (kDeep * reach), 1.0);
-  return {part * std::sqrt(part), kDepthError * depth, kProductError * depth * area,
-          kSmallest * depth};
+  const double smaller = std::min(roles_[0].solid->volume(), roles_[1].solid->volume());
+  const double error = std::min(kError * depth * area, kErrorOfSmaller * per_unit3 * smaller);
+  return {part * std::sqrt(part), error / area, kLeastPart * error, kSmallest * depth, depth};
 }
 
 bool SurfacePair::is_precise(double error, double area) const {
@@ -120,7 +122,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
   for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
   const Vec3 normal = normalized_or_zero(at.normal);
-  if (longest > most) return add_force_of_cells(which, cell, normal, {});
+  if (longest > most) return add_force_of_cells(which, cell, normal);
   const Vec3 middle = (a + b + c) / 3;
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
@@ -129,7 +131,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   const double error = per_unit_ * std::abs(before.at(middle) - depth.value),
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
   if (longest > precision_.size * most && !(before.is_known && is_precise(error, area)))
-    return add_force_of_cells(which, cell, normal, {});
+    return add_force_of_cells(which, cell, normal);
   const ForceAndTorque f = linear_force(triangle_force_moments(a, b, c), depth, middle);
   const double unit3 = per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
@@ -148,14 +150,8 @@ void SurfacePair::add_force_of_crossed(std::size_t which, const CrossedTriangle&
     cut_segments_.push_back(role.segments[k].first);
   const double most = precision_.size * kCell * role.solid->reach();
   if (role.tree->longest_edge(triangle.triangle) <= most) {
-    Foretold linear = plane_across(which, cut_segments_);
-    if (!linear.is_known) return;
-    const double area = triangle.area.real();
-    if (squared_norm(linear.depth.gradient) < kAgreeing2 && area > 0)
-      linear = depth_at(which, triangle.mean.real() / area);
-    LinearPiece piece = add_cut_force(which, triangle.moments(), linear);
-    piece.middle = area > 0 ? triangle.mean.real() / area : triangle.corner[0];
-    if (with_contacts_) note_force_of_face(which, triangle, piece);
+    const auto piece = add_force_of_cut(which, triangle, cut_segments_);
+    if (piece && with_contacts_) note_force_of_face(which, triangle, *piece);
     return;
   }
   for (std::uint32_t k = triangle.last_point; k != CrossedTriangle::kEnd; k = role.points[k].second)
@@ -163,68 +159,150 @@ void SurfacePair::add_force_of_crossed(std::size_t which, const CrossedTriangle&
   DepthCell cell{triangle.corner, {}, cut_segments_, cut_points_};
   for (std::size_t k = 0; k < 3; ++k)
     cell.is_inside[k] = is_inside(which, role.tree->triangles()[triangle.triangle][k]) ? 1 : 0;
-  add_force_of_cells(which, cell, triangle.normal, {});
+  add_force_of_cells(which, cell, triangle.normal);
 }
+
+// Sums up the part inside of one cell after the other of a triangle.
+class SurfacePair::CellVisitor {
+ public:
+  struct Value {
+    double area = 0;
+    DepthIntegral integral;
+    Foretold sampled;
+    bool is_large = false;
+  };
+
+  CellVisitor(SurfacePair& pair, std::size_t role, Vec3 normal)
+      : pair_(pair),
+        role_(role),
+        normal_(normal),
+        most2_(square(pair.per_unit_ * kCell * pair.roles_[role].solid->reach())),
+        sampled2_(most2_),
+        small2_(std::max(square(pair.precision_.size) * most2_, square(pair.precision_.smallest))) {
+    if (pair.precision_.size < 1) sampled2_ *= square(kForetelling);
+  }
+
+  bool is_too_large(const DepthCell& cell) const { return cell.longest_edge2() > sampled2_; }
+  bool is_large(const DepthCell& cell) const { return cell.longest_edge2() > most2_; }
+  bool takes(const DepthCell& cell) {
+    if (cell.longest_edge2() > small2_) return false;
+    pair_.add_force_of_small_cell(role_, cell, normal_);
+    return true;
+  }
+
+  Value value(const DepthCell& cell) {
+    const auto& [a, b, c] = cell.corner;
+    if (cell.is_whole()) {
+      if (cell.is_inside[0] == 0) return {};
+      const double area = 0.5 * norm(cross(b - a, c - a));
+      const Vec3 middle = (a + b + c) / 3;
+      const Foretold sampled = pair_.depth_at(role_, middle);
+      const Vec3 p = a - middle, q = b - middle, r = c - middle, g = sampled.depth.gradient;
+      const Vec3 slope = (dot(g, p) * p + dot(g, q) * q + dot(g, r) * r) / 12;
+      const double depth = sampled.depth.value;
+      return {area, {depth * area, area * (depth * middle + slope)}, sampled, is_large(cell)};
+    }
+    CrossedTriangle part;
+    part.corner = cell.corner, part.normal = normal_;
+    pair_.add_cuts(cell, part);
+    const double area = part.area.real();
+    if (!(area > 0)) return {};  // rounding
+    const Vec3 middle = part.mean.real() / area;
+    auto& planes = pair_.planes_;
+    planes.clear();
+    for (const CutSegment& s : cell.segments) {
+      const CrossedTriangle& other = pair_.roles_[1 - role_].crossed[s.other];
+      planes.push_back({other.normal, dot(other.normal, other.corner[0])});
+    }
+    const Foretold sampled = pair_.depth_at(role_, middle);
+    return {area, pair_.fan_.integral(cell, normal_, planes, middle, sampled.depth), sampled,
+            is_large(cell)};
+  }
+
+  bool is_negligible(const Value& value) const {
+    return value.area * std::abs(value.sampled.depth.value) <= pair_.precision_.product;
+  }
+
+  bool agree(Value& value, const Value& first, const Value& second) const {
+    const DepthIntegral &p = first.integral, &q = second.integral;
+    const DepthIntegral sum{p.volume + q.volume, p.moment + q.moment};
+    const double more = sum.volume - value.integral.volume;
+    const Vec3 shift = sum.moment - value.integral.moment - more * value.sampled.place;
+    const double size = norm(first.sampled.place - second.sampled.place);
+    const double error = std::max(std::abs(more), kShift * norm(shift) / size);
+    value.integral = sum;
+    if (value.is_large && value.sampled.depth.value > kShallow * pair_.precision_.mean)
+      return false;
+    return std::min(first.area, second.area) >= kLeastHalf * value.area &&
+           (error <= pair_.precision_.depth * value.area || error <= pair_.precision_.product);
+  }
+
+  void take(const DepthCell& cell, const Value& value) {
+    const auto& [volume, moment] = value.integral;
+    const ForceAndTorque f{-volume * normal_, -cross(moment, normal_)};
+    pair_.roles_[role_].sums.cut_wrench.add(f.force, f.torque);
+    const Foretold& s = value.sampled;
+    if (pair_.with_contacts_)
+      pair_.note_force_of_cell(role_, cell, {s.depth, s.place, f, s.place}, normal_);
+  }
+
+ private:
+  // Halves that hold less of the part inside do not tell whether its integral is right.
+  static constexpr double kLeastHalf = 1.0 / 8;
+  // Halves may move the integral's middle so far, relative to their distance, times its error.
+  static constexpr double kShift = 1;
+  // Cells above the largest size may stay where they are not deeper than so many mean depths.
+  static constexpr double kShallow = 4;
+
+  SurfacePair& pair_;
+  std::size_t role_;
+  Vec3 normal_;
+  double most2_, sampled2_, small2_;  // squared longest edges, in the unit
+};
 
 // Adds the force on the part of a triangle inside, cell by cell.
-void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& triangle, Vec3 normal,
-                                     const Foretold& foretold) {
-  const double most2 = square(per_unit_ * kCell * roles_[which].solid->reach()),
-               small2 = std::max(square(precision_.size) * most2, square(precision_.smallest));
-  cells_.run(triangle, normal, foretold, [&](const DepthCell& cell, Foretold& known) {
-    const double longest2 = cell.longest_edge2();
-    if (longest2 > most2) return false;
-    const bool is_small = longest2 <= small2;
-    return cell.is_whole() ? add_force_of_whole_cell(which, cell, normal, is_small, known)
-                           : add_force_of_cut_cell(which, cell, normal, is_small);
-  });
+void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& cell, Vec3 normal) {
+  CellVisitor visitor(*this, which, normal);
+  cells_.run(cell, normal, visitor);
 }
 
-bool SurfacePair::add_force_of_whole_cell(std::size_t which, const DepthCell& cell, Vec3 normal,
-                                          bool is_small, Foretold& foretold) {
-  const auto& [a, b, c] = cell.corner;
-  const Foretold here = depth_at(which, (a + b + c) / 3), before = foretold;
-  foretold = here;
-  const double error = std::abs(before.at(here.place) - here.depth.value);
-  if (!is_small && !(before.is_known && is_precise(error, 0.5 * norm(cross(b - a, c - a)))))
-    return false;
-  const LinearPiece piece = add_cut_force(which, triangle_force_moments(a, b, c), here);
-  if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
-  return true;
-}
-
-// The depth is that below the planes that cut the cell, or that near the middle of what is inside:
-// the first is right at the cuts, the second in the middle, and each is judged where it may be
-// wrong.
-bool SurfacePair::add_force_of_cut_cell(std::size_t which, const DepthCell& cell, Vec3 normal,
-                                        bool is_small) {
-  CrossedTriangle part;
-  part.corner = cell.corner, part.normal = normal;
+// Adds what bounds the part of a cell inside.
+void SurfacePair::add_cuts(const DepthCell& cell, CrossedTriangle& part) {
   for (const CutSegment& s : cell.segments) part.add_segment(s.start, s.end);
   for (const CutPoint& point : cell.points)
     if (point.edge == 1) part.add_far_point(point.sign, point.place);
   if (cell.is_inside[2] != 0) part.add_corner_inside();
-  Foretold linear = plane_across(which, cell.segments);
-  if (!linear.is_known) return true;  // nothing is inside but what rounding left
-  const double area = part.area.real();
-  const Vec3 middle = area > 0 ? part.mean.real() / area : cell.corner[0];
-  if (is_small) {
-    if (squared_norm(linear.depth.gradient) < kAgreeing2 && area > 0)
-      linear = depth_at(which, middle);
+}
+
+void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& cell, Vec3 normal) {
+  const auto& [a, b, c] = cell.corner;
+  LinearPiece piece;
+  if (cell.is_whole()) {
+    piece = add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, (a + b + c) / 3));
   } else {
-    const double longest = std::sqrt(cell.longest_edge2());
-    const Foretold sampled = depth_at(which, middle);
-    const double error_of_plane = std::abs(linear.at(middle) - sampled.depth.value) * area +
-                                  error_at_border(which, cell.segments, normal, longest, linear);
-    const double error_of_sample = error_at_border(which, cell.segments, normal, longest, sampled);
-    if (error_of_sample < error_of_plane) linear = sampled;
-    const double error = std::min(error_of_plane, error_of_sample);
-    if (!(error <= precision_.depth * area || error <= precision_.product)) return false;
+    CrossedTriangle part;
+    part.corner = cell.corner, part.normal = normal;
+    add_cuts(cell, part);
+    const auto added = add_force_of_cut(which, part, cell.segments);
+    if (!added) return;
+    piece = *added;
   }
-  LinearPiece piece = add_cut_force(which, part.moments(), linear);
-  piece.middle = middle;
   if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
-  return true;
+}
+
+// Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
+// closest point where these disagree. Returns nothing where nothing crosses it.
+std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
+    std::size_t which, const CrossedTriangle& triangle, std::span<const CutSegment> segments) {
+  Foretold linear = plane_across(which, segments);
+  if (!linear.is_known) return std::nullopt;
+  const double area = triangle.area.real();
+  const Vec3 middle = area > 0 ? triangle.mean.real() / area : triangle.corner[0];
+  if (squared_norm(linear.depth.gradient) < kAgreeing2 && area > 0)
+    linear = depth_at(which, middle);
+  LinearPiece piece = add_cut_force(which, triangle.moments(), linear);
+  piece.middle = middle;
+  return piece;
 }
 
 // Returns the depth below the mean of the planes that cut a triangle, weighted by the lengths of
@@ -243,21 +321,6 @@ SurfacePair::Foretold SurfacePair::plane_across(std::size_t which,
   const double sum = weight.real();
   if (!(sum > 0)) return {};
   return {{offset.real() / sum, -normal.real() / sum}, {}, true};
-}
-
-// Returns by how much the integral of a linear depth may be wrong since the depth is 0 at the cuts
-// and grows from there as that below the planes that cut. None reaches farther than `most`.
-double SurfacePair::error_at_border(std::size_t which, std::span<const CutSegment> segments,
-                                    Vec3 normal, double most, const Foretold& linear) const {
-  WideSum sum;
-  for (const CutSegment& s : segments) {
-    const double from = linear.at(s.start), to = linear.at(s.end);
-    const double mean = std::sqrt((from * from + from * to + to * to) / 3);
-    const double slope = norm(cross(roles_[1 - which].crossed[s.other].normal, normal));
-    const double width = mean < 2 * slope * most ? mean / (2 * slope) : most;
-    sum.add(norm(s.end - s.start) * mean * width);
-  }
-  return sum.real();
 }
 
 // Returns the depth below the other's surface at a place in the first's frame; in the unit.

@@ -13,6 +13,7 @@
 #include "libvpm/solid/contact_parts.h"
 #include "libvpm/solid/crossed_triangle.h"
 #include "libvpm/solid/depth_cells.h"
+#include "libvpm/solid/depth_fan.h"
 #include "libvpm/solid/linear_force.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
@@ -100,7 +101,9 @@ class SurfacePair {
     double depth = 0;     // error that pieces may have, on average over each,
     double product = 0;   // or times its area
     double smallest = 0;  // size of pieces that are never cut
+    double mean = 0;      // depth
   };
+  class CellVisitor;
   // Node (or kLeaf | triangle) that lies inside as a whole. Contacts are summed from these
   struct WholePiece {
     std::uint32_t role, child;
@@ -155,14 +158,12 @@ class SurfacePair {
   void add_force_of_whole(std::size_t role, std::uint32_t child);
   void add_force_of_triangle(std::size_t role, std::uint32_t triangle, const Foretold& before);
   bool add_force_of_patch(std::size_t role, std::uint32_t node, Foretold& foretold);
-  void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal,
-                          const Foretold& foretold);
-  bool add_force_of_whole_cell(std::size_t role, const DepthCell& cell, Vec3 normal, bool is_small,
-                               Foretold& foretold);
-  bool add_force_of_cut_cell(std::size_t role, const DepthCell& cell, Vec3 normal, bool is_small);
+  void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal);
+  void add_force_of_small_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
+  static void add_cuts(const DepthCell& cell, CrossedTriangle& part);
+  std::optional<LinearPiece> add_force_of_cut(std::size_t role, const CrossedTriangle& triangle,
+                                              std::span<const CutSegment> segments);
   Foretold plane_across(std::size_t role, std::span<const CutSegment> segments) const;
-  double error_at_border(std::size_t role, std::span<const CutSegment> segments, Vec3 normal,
-                         double most, const Foretold& linear) const;
   Foretold depth_at(std::size_t role, Vec3 place);
   LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear);
 
@@ -194,6 +195,8 @@ class SurfacePair {
   std::vector<std::uint32_t> pending_;                       // nodes
   std::vector<std::pair<std::uint32_t, Foretold>> patches_;  // nodes, and what their parents tell
   DepthCells cells_;
+  DepthFan fan_;
+  std::vector<DepthFan::Plane> planes_;
   std::vector<CutSegment> cut_segments_;  // of one triangle
   std::vector<CutPoint> cut_points_;
   std::uint32_t stamp_ = 0;

@@ -104,7 +104,7 @@ test::ConvexParts sectors_of(const Solid& disk) {
 
 // Errors that forces may have, relative to themselves, and work along closed paths, relative to
 // what is done and given back.
-constexpr double kMost = .15, kMostWork = .05;
+constexpr double kMost = .07, kMostWork = .02;
 
 struct Thin {
   const char* name;
@@ -132,8 +132,8 @@ std::vector<Thin> thin_contacts() {
        {.09, .002, .2},
        {-.2, 0, -1}},
       {"tip in a plane", cone(.03, .05, 32), wall, {.1, .2, 0}, up, down},
-      {"ball in a plane", make_icosphere(.05, 3), wall, {.3, .2, .1}, up, down},
-      {"ball in a ball", make_icosphere(.05, 3), make_icosphere(.05, 3), {.3, .2, .1}, up, down},
+      {"ball in a plane", make_icosphere(.05, 2), wall, {.3, .2, .1}, up, down},
+      {"ball in a ball", make_icosphere(.05, 2), make_icosphere(.05, 2), {.3, .2, .1}, up, down},
       {"coarse balls", make_icosphere(.05, 1), make_icosphere(.04, 2), {.3, .2, .1}, up, down},
       {"rods across", rod, rod, {M_PI / 2, 0, 0}, {.2, .003, .01}, {-1, 0, 0}},
       {"rods askew", rod, rod, {.5, .02, .1}, {.2, .003, .01}, {-1, 0, 0}},
@@ -161,7 +161,7 @@ class ThinContact {
         pair_(test::surface(thin.a, true), test::surface(thin.b, true)) {
     double high = 1e-4;
     for (; !(truth(pose(high), false).volume > 0); high *= 1.5) touch_ = high;
-    while (high - touch_ > 1e-12) {
+    while (high - touch_ > 1e-10) {
       const double middle = .5 * (touch_ + high);
       (truth(pose(middle), false).volume > 0 ? high : touch_) = middle;
     }
@@ -188,13 +188,22 @@ class ThinContact {
   double touch_ = 0;  // along the way
 };
 
-// Forces by .15 of themselves at most, and lines of action by as much of the contact's extent and
-// 2 um, which is what sums of such small volumes resolve.
+// Prepared once.
+std::vector<std::pair<std::string, ThinContact>>& prepared() {
+  static std::vector<std::pair<std::string, ThinContact>> contacts = [] {
+    std::vector<std::pair<std::string, ThinContact>> all;
+    for (const Thin& thin : thin_contacts()) all.emplace_back(thin.name, ThinContact(thin));
+    return all;
+  }();
+  return contacts;
+}
+
+// Forces err by .07 of themselves at most, and lines of action by as much of the contact's extent
+// and 2 um, which is what sums of such small volumes resolve.
 TEST(ThinContact, ForcesAreRightRelativeToThemselves) {
-  for (const Thin& thin : thin_contacts()) {
-    ThinContact contact(thin);
+  for (auto& [name, contact] : prepared()) {
     for (const double depth : {1e-5, 1e-4, 5e-4}) {
-      SCOPED_TRACE(std::string(thin.name) + ", " + std::to_string(1e6 * depth) + " um");
+      SCOPED_TRACE(name + ", " + std::to_string(1e6 * depth) + " um");
       const Pose pose = contact.at_depth(depth);
       const test::DepthTruth truth = contact.truth(pose);
       const SharedSolid shared = contact.measure(pose);
@@ -209,9 +218,8 @@ TEST(ThinContact, ForcesAreRightRelativeToThemselves) {
 
 // Along a closed path of poses in contact the force does no work: E is an energy.
 TEST(ThinContact, ForcesDoNoWorkAlongClosedPaths) {
-  for (const Thin& thin : thin_contacts()) {
-    SCOPED_TRACE(thin.name);
-    ThinContact contact(thin);
+  for (auto& [name, contact] : prepared()) {
+    SCOPED_TRACE(name);
     constexpr int kSteps = 64;
     const double half = 4e-5;
     Vec3 last_force, last_place;
