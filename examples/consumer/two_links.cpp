@@ -1,8 +1,9 @@
 // two-links [FOLDER]: a hand holds a link with a peg, and a second link hangs on the peg by its
 // hole and swings under gravity, in 3000 steps of 1 ms. The hand feels a virtual coupling; peg and
-// hole part by the volume V that they share: the contact holds the energy k V^2 / 2, whose gradient
-// is exact, as V is. Prints where the energy went. With a FOLDER, links.csv there has each fifth
-// step, which scripts/plot_links.py draws.
+// hole part by the force of the depth in what they share, and by a damper that acts on its volume.
+// Prints where the energy went: what the contact holds is the work that was done against its force,
+// which comes back to nothing wherever the two part, or the force would be that of no energy. With
+// a FOLDER, links.csv there has each fifth step, which scripts/plot_links.py draws.
 #include <vpm/error.h>
 #include <vpm/solid.h>
 #include <vpm/virtual_coupling.h>
@@ -47,7 +48,7 @@ Vec3 place(const Pose& pose, Vec3 v) {
 constexpr int kSteps = 3000;
 constexpr double kStep = 1e-3, kGravity = 9.81;            // s, m/s^2
 constexpr double kPeg = 4.5e-3, kHole = 5e-3;              // radii, m
-constexpr double kStiffness = 4e12, kDamping = 5e-4;       // of the contact: J/m^6, s
+constexpr double kStiffness = 4e8, kDamping = 2e9;         // of the contact: N/m^3, N s/m^5
 constexpr double kDensity = 2700, kGyration = 0.035;       // kg/m^3 and m, of both links
 constexpr double kHandStiffness = 800, kHandDamping = 15;  // N/m, N s/m
 constexpr double kSwing = 40 * std::numbers::pi / 180;     // of the second link at first, rad
@@ -90,7 +91,7 @@ auto bar(double x0, double x1) {
 }
 
 vpm::SolidBody body_of(const Mesh& mesh) {
-  return vpm::SolidBody(vpm::SolidMesh::from_triangles(mesh.vertices, mesh.triangles), false);
+  return vpm::SolidBody(vpm::SolidMesh::from_triangles(mesh.vertices, mesh.triangles));
 }
 
 auto disk(double radius) {
@@ -149,26 +150,28 @@ struct Link {
   Vec3 velocity = {}, spin = {};
 };
 
-// What a contact gives: a force on the first link at a place and a torque about that, the energy
-// that it holds, J, and the power of its damper, W.
+// Force and torque on the first link, the torque about the place, as the depth has them and with
+// the damper, whose power is `damped`, W.
 struct Contact {
-  Vec3 place, force, torque;
-  double energy = 0, damped = 0;
+  Vec3 place;
+  vpm::Wrench of_depth, all;
+  double damped = 0;
 };
 
-// Takes the exact gradient of the volume (`area` where the first link moves, `turn` where it turns
-// about the centroid) times a pressure, which grows with the volume and the rate of that.
+// Adds to the wrench of the overlap a damper: a pressure that grows with the rate of the volume,
+// whose gradient is exact (`area` where the first link moves, `turn` where it turns).
 Contact contact_of(const vpm::Overlap& shared, const Link& a, const Link& b) {
   const Vec3 closing = a.velocity_at(shared.centroid) - b.velocity_at(shared.centroid);
   const double rate = dot(shared.area, closing) + dot(shared.turn, a.spin - b.spin);
-  const double pressure = kStiffness * (shared.volume + kDamping * rate);
-  return {shared.centroid, -pressure * shared.area, -pressure * shared.turn,
-          0.5 * kStiffness * shared.volume * shared.volume, kStiffness * kDamping * rate * rate};
+  const auto& [force, torque] = shared.wrench;
+  return {shared.centroid,
+          shared.wrench,
+          {force - kDamping * rate * shared.area, torque - kDamping * rate * shared.turn},
+          kDamping * rate * rate};
 }
 
-vpm::Wrench wrench_about(Vec3 center, const Contact& contact, double sign) {
-  return {sign * contact.force,
-          sign * (contact.torque + cross(contact.place - center, contact.force))};
+vpm::Wrench wrench_about(Vec3 center, Vec3 place, const vpm::Wrench& wrench, double sign) {
+  return {sign * wrench.force, sign * (wrench.torque + cross(place - center, wrench.force))};
 }
 
 // The hand rests, moves 30 mm aside and up and back within a second, and rests again.
@@ -192,7 +195,7 @@ class Hinge {
   Hinge()
       : held_(link_with_peg()),
         hung_(link_with_hole()),
-        overlap_(held_.body, hung_.body, {.with_force = false}),
+        overlap_(held_.body, hung_.body, {.stiffness = kStiffness}),
         hand_({kHandStiffness, kHandDamping, held_.mass, kGyration, 1 / kStep},
               held_.body.center_of_mass(), {}) {
     const double half = 0.5 * (0.5 * std::numbers::pi - kSwing);
@@ -204,10 +207,12 @@ class Hinge {
   // Accounts for the energies, then makes a step.
   void step(double time) {
     const Contact contact = contact_of(overlap_.run(held_.pose, hung_.pose), held_, hung_);
-    account(contact);
-    vpm::Wrench on_held = wrench_about(held_.center(), contact, 1);
+    add_work(held_, contact, 1, before_[0]);
+    add_work(hung_, contact, -1, before_[1]);
+    keep_account();
+    vpm::Wrench on_held = wrench_about(held_.center(), contact.place, contact.all, 1);
     on_held.force.z -= held_.mass * kGravity;
-    hung_.step(wrench_about(hung_.center(), contact, -1));
+    hung_.step(wrench_about(hung_.center(), contact.place, contact.all, -1));
     const Link before = held_;
     hand_.advance(hand_at(time), on_held);
     held_.pose = hand_.tool();
@@ -232,13 +237,23 @@ class Hinge {
  private:
   double height() const { return held_.height_energy() + hung_.height_energy(); }
 
-  void account(const Contact& contact) {
+  // Adds the work against the depth's wrench on a link along the step that led here: by its motion,
+  // and the mean of the wrenches at both ends about its centre.
+  void add_work(const Link& link, const Contact& contact, double sign, vpm::Wrench& before) {
+    const vpm::Wrench now = wrench_about(link.center(), contact.place, contact.of_depth, sign);
+    squeezed_ -=
+        0.5 * kStep *
+        (dot(before.force + now.force, link.velocity) + dot(before.torque + now.torque, link.spin));
+    before = now;
+  }
+
+  void keep_account() {
     const vpm::CouplingEnergy hand = hand_.energy();
     Account& a = account_;
     a = {hand.supplied + start_ - height(),
          hung_.kinetic(),
          hand.stored,
-         contact.energy,
+         squeezed_,
          hand.dissipated + hand.lost,
          contact_damped_,
          0};
@@ -259,7 +274,8 @@ class Hinge {
   Link held_, hung_;
   vpm::OverlapQuery overlap_;
   vpm::VirtualCoupling hand_;
-  double start_ = 0, contact_damped_ = 0;
+  double start_ = 0, contact_damped_ = 0, squeezed_ = 0;
+  std::array<vpm::Wrench, 2> before_ = {};  // of the depth on each link, at the step before
   Account account_;
 };
 
