@@ -1,33 +1,38 @@
-// Forces of a pair of surfaces: the depth below each, over the part of the other inside. It is
-// taken for linear over pieces. Where the solids share much for their size, the size of pieces is
-// all that matters. Where they share little, a piece of the largest size may be far longer than it
-// is deep: then samples tell whether a piece may stay as it is, or else it is cut.
+// Forces of a pair of surfaces: the depth below each, over the part of the
+// other inside. It is taken for linear over pieces. Where the solids share much
+// for their size, the size of pieces is all that matters. Where they share
+// little, a piece of the largest size may be far longer than it is deep: then
+// samples tell whether a piece may stay as it is, or else it is cut.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "libvpm/solid/surface_pair.h"
 
 namespace vpm {
 namespace {
 
-// Largest pieces: the radius of whole ones relative to the reach, half their slab's thickness
-// relative to the depth, and the longest edge of triangles and cells of triangles relative to the
-// reach.
+// Largest pieces: the radius of whole ones relative to the reach, half their
+// slab's thickness relative to the depth, and the longest edge of triangles and
+// cells of triangles relative to the reach.
 constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.12;
-// Planes that cross a triangle stand for the depth below them if their mean normal is so long;
-// where they disagree there is a crease.
+// Planes that cross a triangle stand for the depth below them if their mean
+// normal is so long; where they disagree there is a crease.
 constexpr double kAgreeing2 = 0.97;
-// Mean depth, relative to the smaller reach, from which on no piece is looked at twice, and the
-// least one that is told from none.
+// Mean depth, relative to the smaller reach, from which on no piece is looked
+// at twice, and the least one that is told from none.
 constexpr double kDeep = 1.0 / 32, kLeastDepth = 1e-5;
-// Error of the integral of the depth over all that is inside, relative to the volume and to that of
-// the smaller solid; pieces share it by their areas, and none needs less than its part.
+// Error of the integral of the depth over all that is inside, relative to the
+// volume and to that of the smaller solid; pieces share it by their areas, and
+// none needs less than its part.
 constexpr double kError = 0.02, kErrorOfSmaller = 1e-3, kLeastPart = 1.0 / 256;
 // Size of the smallest pieces relative to the mean depth.
 constexpr double kSmallest = 0.1;
-// Pieces up to so many times as large are sampled where samples tell whether they may stay, or to
-// foretell smaller ones.
+// Pieces up to so many times as large are sampled where samples tell whether
+// they may stay, or to foretell smaller ones.
 constexpr double kForetelling = 4;
+// Pieces that tell how deep thin solids are.
+constexpr std::size_t kProbes = 8;
 
 double square(double v) {
   return v * v;
@@ -35,18 +40,53 @@ double square(double v) {
 
 }  // namespace
 
-// Chooses by the mean depth, of which the volume is the product with the area inside.
-SurfacePair::Precision SurfacePair::precision() const {
+// Chooses by the mean depth: that of what is shared, of which the volume is the
+// product with the area inside, or for thin solids, which may be deep inside
+// though they share little, that of the largest pieces.
+SurfacePair::Precision SurfacePair::precision() {
   const double reach = per_unit_ * std::min(roles_[0].solid->reach(), roles_[1].solid->reach());
   const double flux = sums_.inner[0].moments.flux() + sums_.inner[1].moments.flux();
   const double per_unit3 = per_unit_ * per_unit_ * per_unit_, volume = per_unit3 * flux / 3;
   const double area = std::max(roles_[0].sums.area.real(), roles_[1].sums.area.real());
   if (!(area > 0)) return {};
-  const double depth = std::max(volume / area, kLeastDepth * reach);
-  const double part = std::min(depth / (kDeep * reach), 1.0);
+  const double depth = std::max(volume / area, kLeastDepth * reach), deep = kDeep * reach;
+  const double part =
+      std::min((depth < deep ? std::max(depth, depth_of_largest()) : depth) / deep, 1.0);
   const double smaller = std::min(roles_[0].solid->volume(), roles_[1].solid->volume());
   const double error = std::min(kError * depth * area, kErrorOfSmaller * per_unit3 * smaller);
   return {part * std::sqrt(part), error / area, kLeastPart * error, kSmallest * depth, depth};
+}
+
+// Returns the mean depth at the middles of the largest pieces, by their areas;
+// half of it, since the middles of few are deeper than most.
+double SurfacePair::depth_of_largest() {
+  probes_.clear();
+  for (std::uint32_t role = 0; role < 2; ++role)
+    for (const CrossedTriangle& triangle : roles_[role].crossed)
+      if (const double area = triangle.area.real(); area > 0)
+        probes_.push_back({area, triangle.mean.real() / area, role});
+  for (const WholePiece& piece : whole_pieces_) {
+    const Role& role = roles_[piece.role];
+    const bool is_triangle = (piece.child & kLeaf) != 0;
+    const auto [a, b, c] = role.tree->corners(is_triangle ? piece.child & ~kLeaf : 0);
+    const double area =
+        is_triangle ? 0.5 * norm(cross(b - a, c - a)) : role.tree->patches()[piece.child].area;
+    const Vec3 middle = is_triangle ? (a + b + c) / 3 : role.tree->patches()[piece.child].middle;
+    probes_.push_back(
+        {per_unit_ * per_unit_ * area, per_unit_ * (role.to_first * middle), piece.role});
+  }
+  const auto order = [](const Probe& p) {
+    return std::tuple(-p.area, p.place.x, p.place.y, p.place.z, p.role);
+  };
+  const std::size_t count = std::min(probes_.size(), kProbes);
+  std::ranges::partial_sort(probes_, probes_.begin() + static_cast<std::ptrdiff_t>(count), {},
+                            order);
+  double sum = 0, areas = 0;
+  for (const auto& [area, place, role] : std::span(probes_).first(count)) {
+    sum += area * std::max(depth_at(role, place).depth.value, 0.0);
+    areas += area;
+  }
+  return areas > 0 ? sum / areas / 2 : 0;
 }
 
 bool SurfacePair::is_precise(double error, double area) const {
@@ -68,7 +108,8 @@ void SurfacePair::add_forces() {
     add_force_of_whole(whole_pieces_[whole_].role, whole_pieces_[whole_].child);
 }
 
-// Adds the force on all below a node, or on a triangle, which lies inside as a whole.
+// Adds the force on all below a node, or on a triangle, which lies inside as a
+// whole.
 void SurfacePair::add_force_of_whole(std::size_t which, std::uint32_t child) {
   if ((child & kLeaf) != 0) return add_force_of_triangle(which, child & ~kLeaf, {});
   patches_.assign(1, {child, {}});
@@ -86,8 +127,8 @@ void SurfacePair::add_force_of_whole(std::size_t which, std::uint32_t child) {
   }
 }
 
-// Adds the force on what is below a node, unless it is too large, too thick or not as was foretold;
-// then tells what to expect below.
+// Adds the force on what is below a node, unless it is too large, too thick or
+// not as was foretold; then tells what to expect below.
 bool SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Foretold& foretold) {
   Role& role = roles_[which];
   const SurfaceTree::Patch& patch = role.tree->patches()[node];
@@ -140,8 +181,8 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
     note_force_of_whole(which, added, depth, middle, role.solid->reach(), triangle, triangle + 1);
 }
 
-// Adds the force on the part of a crossed triangle inside: at once if it is small, else cell by
-// cell.
+// Adds the force on the part of a crossed triangle inside: at once if it is
+// small, else cell by cell.
 void SurfacePair::add_force_of_crossed(std::size_t which, const CrossedTriangle& triangle) {
   Role& role = roles_[which];
   cut_segments_.clear(), cut_points_.clear();
@@ -247,11 +288,14 @@ class SurfacePair::CellVisitor {
   }
 
  private:
-  // Halves that hold less of the part inside do not tell whether its integral is right.
+  // Halves that hold less of the part inside do not tell whether its integral
+  // is right.
   static constexpr double kLeastHalf = 1.0 / 8;
-  // Halves may move the integral's middle so far, relative to their distance, times its error.
+  // Halves may move the integral's middle so far, relative to their distance,
+  // times its error.
   static constexpr double kShift = 1;
-  // Cells above the largest size may stay where they are not deeper than so many mean depths.
+  // Cells above the largest size may stay where they are not deeper than so
+  // many mean depths.
   static constexpr double kShallow = 4;
 
   SurfacePair& pair_;
@@ -290,8 +334,9 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
   if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
 }
 
-// Adds the force on the part of a crossed triangle: below the planes that cross it, or below the
-// closest point where these disagree. Returns nothing where nothing crosses it.
+// Adds the force on the part of a crossed triangle: below the planes that cross
+// it, or below the closest point where these disagree. Returns nothing where
+// nothing crosses it.
 std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
     std::size_t which, const CrossedTriangle& triangle, std::span<const CutSegment> segments) {
   Foretold linear = plane_across(which, segments);
@@ -305,8 +350,8 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
   return piece;
 }
 
-// Returns the depth below the mean of the planes that cut a triangle, weighted by the lengths of
-// the cuts. Known if there is any.
+// Returns the depth below the mean of the planes that cut a triangle, weighted
+// by the lengths of the cuts. Known if there is any.
 SurfacePair::Foretold SurfacePair::plane_across(std::size_t which,
                                                 std::span<const CutSegment> segments) const {
   WideVec3 normal;
@@ -323,7 +368,8 @@ SurfacePair::Foretold SurfacePair::plane_across(std::size_t which,
   return {{offset.real() / sum, -normal.real() / sum}, {}, true};
 }
 
-// Returns the depth below the other's surface at a place in the first's frame; in the unit.
+// Returns the depth below the other's surface at a place in the first's frame;
+// in the unit.
 SurfacePair::Foretold SurfacePair::depth_at(std::size_t which, Vec3 place) {
   const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
   Depth depth = roles_[1 - which].solid->depth(to_other * (unit_ * place));

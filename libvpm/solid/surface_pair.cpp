@@ -23,6 +23,8 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     const std::size_t triangles = role.tree->triangles().size();
     role.crossed_stamp.assign(triangles, 0);
     role.crossed_place.assign(triangles, 0);
+    role.placed_stamp.assign(triangles, 0);
+    role.placed_place.assign(triangles, 0);
     role.node_stamp.assign(role.tree->nodes().size(), 0);
     role.corner_stamp.assign(role.tree->vertices().size(), 0);
     role.is_inside.assign(role.tree->vertices().size(), 0);
@@ -53,7 +55,8 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
 void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   if (++stamp_ == 0) {  // wrapped: forget all stamps
     for (Role& role : roles_)
-      for (auto* stamps : {&role.crossed_stamp, &role.node_stamp, &role.corner_stamp})
+      for (auto* stamps :
+           {&role.crossed_stamp, &role.placed_stamp, &role.node_stamp, &role.corner_stamp})
         stamps->assign(stamps->size(), 0);
     stamp_ = 1;
   }
@@ -66,8 +69,7 @@ void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
   for (Role& role : roles_) {
-    role.placed_last = kNone;
-    role.crossed.clear(), role.segments.clear(), role.points.clear();
+    role.placed.clear(), role.crossed.clear(), role.segments.clear(), role.points.clear();
     role.sums = {};
   }
 }
@@ -80,19 +82,20 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
   return {corners, role.tree->triangles()[triangle], normal, role.tree->longest_edge(triangle)};
 }
 
-// Returns placed(), kept from the call before for the same triangle.
-const PlacedTriangle& SurfacePair::placed_again(Role& role, std::uint32_t triangle) {
-  if (role.placed_last != triangle) {
-    role.placed_last = triangle;
-    role.last = placed(role, triangle);
+// Returns where placed() of a triangle is kept for this pose.
+std::uint32_t SurfacePair::place(Role& role, std::uint32_t triangle) {
+  if (role.placed_stamp[triangle] != stamp_) {
+    role.placed_stamp[triangle] = stamp_;
+    role.placed_place[triangle] = static_cast<std::uint32_t>(role.placed.size());
+    role.placed.push_back(placed(role, triangle));
   }
-  return role.last;
+  return role.placed_place[triangle];
 }
 
 void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triangle) {
   ++sums_.candidates;
-  const PlacedTriangle &a = placed_again(roles_[0], first_triangle),
-                       &b = placed_again(roles_[1], second_triangle);
+  const PlacedTriangle &a = roles_[0].placed[place(roles_[0], first_triangle)],
+                       &b = roles_[1].placed[place(roles_[1], second_triangle)];
   TriangleCrossing crossing;
   const Meeting meeting = cross_triangles(a, b, crossing);
   if (meeting == Meeting::undecided) ++sums_.undecided;

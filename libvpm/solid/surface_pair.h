@@ -103,6 +103,12 @@ class SurfacePair {
     double smallest = 0;  // size of pieces that are never cut
     double mean = 0;      // depth
   };
+  // Middle of a piece, in the first's frame and the unit.
+  struct Probe {
+    double area;
+    Vec3 place;
+    std::uint32_t role;
+  };
   class CellVisitor;
   // Node (or kLeaf | triangle) that lies inside as a whole. Contacts are summed from these
   struct WholePiece {
@@ -121,14 +127,14 @@ class SurfacePair {
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
-    Pose to_first, to_other;                         // from its own frame
-    std::uint32_t placed_last = SurfaceTree::kNone;  // triangle
-    PlacedTriangle last;
+    Pose to_first, to_other;             // from its own frame
+    std::vector<PlacedTriangle> placed;  // in the first's frame
     std::vector<CrossedTriangle> crossed;
     // What cuts them, for forces: each entry names the one before of the same triangle.
     std::vector<std::pair<CutSegment, std::uint32_t>> segments;
     std::vector<std::pair<CutPoint, std::uint32_t>> points;
     std::vector<std::uint32_t> crossed_stamp, crossed_place;  // of triangles
+    std::vector<std::uint32_t> placed_stamp, placed_place;    // of triangles
     std::vector<std::uint32_t> node_stamp;                    // nodes above a crossed triangle
     std::vector<std::uint32_t> corner_stamp;                  // vertices whose side is known
     std::vector<std::uint8_t> is_inside;                      // of vertices
@@ -137,7 +143,7 @@ class SurfacePair {
 
   void start(const Pose& pose, bool with_force, bool with_contacts);
   PlacedTriangle placed(const Role& role, std::uint32_t triangle) const;
-  const PlacedTriangle& placed_again(Role& role, std::uint32_t triangle);
+  std::uint32_t place(Role& role, std::uint32_t triangle);
   void meet(std::uint32_t first_triangle, std::uint32_t second_triangle);
   CrossedTriangle& crossed(Role& role, std::uint32_t triangle, const PlacedTriangle& placed);
   bool is_inside(std::size_t role, std::uint32_t vertex);
@@ -152,7 +158,8 @@ class SurfacePair {
 
   // Of forces (surface_forces.cpp).
   void add_forces();
-  Precision precision() const;
+  Precision precision();
+  double depth_of_largest();
   bool is_precise(double error, double area) const;
   void add_force_of_crossed(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_whole(std::size_t role, std::uint32_t child);
@@ -210,6 +217,7 @@ class SurfacePair {
   std::uint32_t face_ = 0;  // place of the crossed triangle whose force is added; kNone: of a whole
   std::uint32_t whole_ = 0;  // number of that
   Precision precision_;
+  std::vector<Probe> probes_;
   std::vector<std::uint32_t> number_of_;  // contact, by the elements of the parts that stand for it
   std::vector<std::array<RoleSums, 2>> contact_sums_;
   std::vector<SurfaceContact> contacts_;

@@ -52,6 +52,7 @@ unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& 
   Int4 meets = (magnitude(d0) <= node.half[0] + half[0]) &
                (magnitude(d1) <= node.half[1] + half[1]) &
                (magnitude(d2) <= node.half[2] + half[2]);
+  if (mask_of(meets) == 0) return 0;
   // The other's slab, about its box's centre.
   const float other_offset =
       other.offset - (other.normal[0] * other.center[0] + other.normal[1] * other.center[1] +

@@ -22,14 +22,13 @@ class Crossing {
   Crossing(const PlacedTriangle& a, const PlacedTriangle& b) : a_(a), b_(b) {
     const double spread = kSpread * (a.longest_edge + b.longest_edge);
     bound_ = kFilter * spread * spread * spread;
-    for (std::size_t k = 0; k < 3; ++k) {
-      above_b_[k] = dot(b.normal, a.corner[k] - b.corner[0]);
-      above_a_[k] = dot(a.normal, b.corner[k] - a.corner[0]);
-    }
   }
 
   Meeting find(TriangleCrossing& found) {
-    if (is_on_one_side(above_b_) || is_on_one_side(above_a_)) return Meeting::apart;
+    measure(a_, b_, above_b_);
+    if (is_on_one_side(above_b_)) return Meeting::apart;
+    measure(b_, a_, above_a_);
+    if (is_on_one_side(above_a_)) return Meeting::apart;
     for (std::size_t k = 0; k < 3; ++k) side_b_[k] = side(above_b_[k], b_, a_.corner[k]);
     if (side_b_[0] == side_b_[1] && side_b_[1] == side_b_[2]) return meeting(Meeting::apart);
     for (std::size_t k = 0; k < 3; ++k) side_a_[k] = side(above_a_[k], a_, b_.corner[k]);
@@ -43,6 +42,12 @@ class Crossing {
 
  private:
   Meeting meeting(Meeting found) const { return has_zero_ ? Meeting::undecided : found; }
+
+  // Measures the corners of a triangle over the plane of another, in six volumes.
+  static void measure(const PlacedTriangle& t, const PlacedTriangle& plane,
+                      std::array<double, 3>& above) {
+    for (std::size_t k = 0; k < 3; ++k) above[k] = dot(plane.normal, t.corner[k] - plane.corner[0]);
+  }
 
   bool is_on_one_side(const std::array<double, 3>& above) const {
     return std::min({above[0], above[1], above[2]}) > bound_ ||
@@ -122,7 +127,7 @@ class Crossing {
 
   const PlacedTriangle &a_, &b_;
   double bound_ = 0;
-  std::array<double, 3> above_b_{}, above_a_{};  // six volumes over the other's plane
+  std::array<double, 3> above_b_{}, above_a_{};  // of the corners over the other's plane
   Signs side_b_{}, side_a_{};
   std::array<Vec3, 3> along_a_, moment_a_, along_b_, moment_b_;
   std::array<std::array<int, 3>, 3> edges_{};
