@@ -188,8 +188,8 @@ struct Overlap {
   // Force and torque on a, times the stiffness. The torque is about the centroid. Those on b are
   // the opposite, in the same bits. They push a out of b: against a solid much larger than a, the
   // force is stiffness times volume where the nearest face of b is one plane. It is never more than
-  // that but for its error: .15 % of the smaller solid's volume, and 7 % of the shared volume (1 % as
-  // a rule) from a depth of 1e-4 radii on where little is shared.
+  // that but for its error: .15 % of the smaller solid's volume and, where little is shared, 7 % of
+  // what is (1 % as a rule) from a depth of 1e-4 radii on.
   Wrench wrench;
   // How far the boundary of the shared solid is from closed, relative to the smaller radius: |∫ n
   // dA| over its square, |∫ x cross n dA| over its cube, the larger. Below 1e-8 in all answers.
