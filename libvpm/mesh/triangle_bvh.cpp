@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <compare>
+#include <functional>
+#include <vector>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
@@ -306,34 +310,82 @@ namespace {
 // Limits the samples along an edge, for triangles as large as the mesh.
 constexpr double kMaxSteps = 2000;
 
-// Returns the largest distance over a triangular lattice on one triangle.
-double farthest(Vec3 a, Vec3 b, Vec3 c, const TriangleBvh& to, double spacing) {
-  const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-  const int steps = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMaxSteps));
-  double worst = 0;
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; i + j <= steps; ++j) {
-      const Vec3 p = a + (static_cast<double>(i) / steps) * (b - a) +
-                     (static_cast<double>(j) / steps) * (c - a);
-      worst = std::max(worst, to.closest(p).distance);
+// Triangular lattice on a triangle, of at most `spacing` between samples.
+struct Lattice {
+  Vec3 a, b, c;
+  int steps;
+
+  Lattice(const Solid& solid, const Triangle& t, double spacing)
+      : a(solid.vertices[t[0]]), b(solid.vertices[t[1]]), c(solid.vertices[t[2]]) {
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    steps = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMaxSteps));
+  }
+
+  Vec3 sample(int i, int j) const {
+    return a + (static_cast<double>(i) / steps) * (b - a) +
+           (static_cast<double>(j) / steps) * (c - a);
+  }
+  Vec3 middle() const { return (a + b + c) / 3; }
+  // Returns the largest distance of a sample from the middle, in metres.
+  double radius() const {
+    const Vec3 m = middle();
+    return std::max({norm(a - m), norm(b - m), norm(c - m)});
+  }
+  // Returns more than rounding changes in a distance from here.
+  double slack() const {
+    constexpr double kRounding = 1e-12;  // thousands of the last place
+    return kRounding * (norm(a) + norm(b) + norm(c));
+  }
+};
+
+// Raises `largest` to the value, if that is larger.
+void raise(std::atomic<double>& largest, double value) {
+  double before = largest.load();
+  while (before < value && !largest.compare_exchange_weak(before, value)) {
+  }
+}
+
+// Raises `largest` to the largest distance of a lattice's samples. A distance changes no faster
+// than the place, so that samples near one that lies close are passed over.
+void raise_to_farthest(const Lattice& lattice, const TriangleBvh& to,
+                       std::atomic<double>& largest) {
+  const double step = norm(lattice.c - lattice.a) / lattice.steps, slack = lattice.slack();
+  for (int i = 0; i <= lattice.steps; ++i) {
+    for (int j = 0; i + j <= lattice.steps; ++j) {
+      const double distance = to.closest(lattice.sample(i, j)).distance;
+      raise(largest, distance);
+      const double room = largest.load() - distance - slack;
+      if (room > step * lattice.steps) break;
+      if (room > step) j += static_cast<int>(room / step);
     }
   }
-  return worst;
 }
 
 }  // namespace
 
 double farthest_from_surface(const Solid& from, const Solid& to, double spacing) {
   const TriangleBvh bvh(to.vertices, to.triangles);
-  std::vector<double> worst(from.triangles.size());
+  // Triangles in which the farthest point may lie go first, and most others are not looked at.
+  struct Bound {
+    double distance;
+    std::size_t triangle;
+    auto operator<=>(const Bound&) const = default;
+  };
+  std::vector<Bound> bounds(from.triangles.size());
   constexpr std::size_t kTogether = 16;
-  parallel_for(worst.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+  parallel_for(bounds.size(), kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const auto [a, b, c] = from.triangles[k];
-      worst[k] = farthest(from.vertices[a], from.vertices[b], from.vertices[c], bvh, spacing);
+      const Lattice lattice(from, from.triangles[k], spacing);
+      bounds[k] = {bvh.closest(lattice.middle()).distance + lattice.radius() + lattice.slack(), k};
     }
   });
-  return worst.empty() ? 0 : *std::max_element(worst.begin(), worst.end());
+  std::sort(bounds.begin(), bounds.end(), std::greater<>());
+  std::atomic<double> largest = 0;
+  parallel_for(bounds.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end && bounds[k].distance > largest.load(); ++k)
+      raise_to_farthest(Lattice(from, from.triangles[bounds[k].triangle], spacing), bvh, largest);
+  });
+  return largest;
 }
 
 }  // namespace vpm

@@ -1,10 +1,12 @@
 // Repairs: holes filled where that is safe, or a new surface from voxels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -226,6 +228,38 @@ TEST(SurfaceDistance, OfSpheresIsThatOfTheirRadii) {
   const Solid part = cut_open(one, 0);
   EXPECT_EQ(farthest_from_surface(part, one, 0.1), 0);
   EXPECT_GT(farthest_from_surface(one, part, 0.1), 0.9);
+}
+
+// No vertex and no point of a triangle is farther, wherever the surfaces lie.
+TEST(SurfaceDistance, IsThatOfTheFarthestPlace) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double far : {0.0, 1e6}) {
+    for (int k = 0; k < 20; ++k) {
+      const auto place = [&] {
+        return Vec3{far + uniform(random), uniform(random), uniform(random)};
+      };
+      const Solid from = moved(make_torus(1, 0.35, 24, 12), place()),
+                  to = moved(make_icosphere(0.5 + uniform(random), 2), place());
+      const TriangleBvh surface(to.vertices, to.triangles);
+      double of_vertices = 0, of_points = 0;
+      for (const Vec3& p : from.vertices)
+        of_vertices = std::max(of_vertices, surface.closest(p).distance);
+      for (const Triangle& t : from.triangles) {
+        const double u = uniform(random), v = (1 - u) * uniform(random);
+        const Vec3 p =
+            (1 - u - v) * from.vertices[t[0]] + u * from.vertices[t[1]] + v * from.vertices[t[2]];
+        of_points = std::max(of_points, surface.closest(p).distance);
+      }
+      const double spacing = 0.02, rounding = 1e-9;
+      EXPECT_NEAR(farthest_from_surface(from, to, 10), of_vertices, rounding);
+      const double found = farthest_from_surface(from, to, spacing);
+      EXPECT_GE(found, of_vertices - rounding);
+      EXPECT_GE(found, of_points - spacing);
+      EXPECT_LE(found, of_vertices + 0.3) << "an edge of the torus is this long";
+      EXPECT_EQ(found, farthest_from_surface(from, to, spacing)) << "in any order of the threads";
+    }
+  }
 }
 
 TEST(RepairByVoxels, AClosedMeshComesBackWithinAVoxel) {
