@@ -4,8 +4,29 @@ import re
 from advice_files import MESH_STARTS, SCAN_STARTS, STARTS
 from advice_words import CAMERA, POSE, TOOL, STEPS, COUPLED, WALL, ROUGH
 
+REMOVED = f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove small.off"
+AT_ONCE, LATER = (f'{{"time":{time},"solids":[[{POSE}]]}}' for time in (0, 9))
+
 # Row: command; advice; command that follows it; volume, if it asks for one; relative tolerance.
 COMMANDS = [
+    # Solids taken out of depth images
+    (f"vpm-normals points.ply -o out.vpmc --remove small.off@{POSE}", "give the depth image",
+     f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove small.off@{POSE}"),
+    (f"{REMOVED}@{POSE} --remove-margin late=1", r"give metres, such as ([\d.]+), or time=S,speed=M/S,calibration=M",
+     f"{REMOVED}@{POSE} --remove-margin {{0}}"),
+    (f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove-margin 0.02", "needs (--remove), which names the solids",
+     f"{REMOVED}@{POSE} --remove-margin 0.02"),
+    (REMOVED, "camera is inside of small.off, which hides all that it sees: leave that solid out", f"vpm-normals wall.pgm {CAMERA} -o out.vpmc"),
+    *[(f"printf '%s\\n' '{{\"remove\":[\"small.off\"]}}' {lines} > out.jsonl; {STEPS} --frames plain --trajectory still.txt --remove out.jsonl",
+       advice, f"printf '%s\\n' '{{\"remove\":[\"small.off\"]}}' '{AT_ONCE}' '{LATER}' > out.jsonl; {STEPS} --frames plain "
+       "--trajectory still.txt --remove out.jsonl")
+      for lines, advice in ((f"'{{\"solids\":[[{POSE}]]}}'", "give a line for each frame, or times"),
+                            ("'{\"time\":0}'", r'write \{"time":0.1,"solids":\[\[tx,ty,tz,qx,qy,qz,qw\], …\]\}'),
+                            (f"'{AT_ONCE}'", "give poses for the time of all frames, on their clock"))],
+    (f"mkdir -p no_camera; vpm-normals points.ply -o no_camera/0.vpmc --force; echo '{{\"remove\":[\"small.off@{POSE}\"]}}' > out.jsonl; "
+     "vpm-query --tool small.vpmg --frames no_camera --trajectory still.txt --remove out.jsonl", "make clouds of the depth images",
+     f"vpm-normals plain {CAMERA} -o made --quiet; echo '{{\"remove\":[\"small.off@{POSE}\"]}}' > out.jsonl; "
+     "vpm-query --tool small.vpmg --frames made --trajectory still.txt --remove out.jsonl"),
     # Outputs
     ("vpm-pack small.off", r"give (-o OUT.vpmp), (--export), (--report) or (--view)",
      "vpm-pack small.off --spheres 5 -o out.vpmp"),

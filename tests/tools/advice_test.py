@@ -57,7 +57,7 @@ UNTRIED = [
         "make it with `with_force`", "give one for each, or none",
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
         "make it with rotation_from_matrix or rotation_from_quaternion", "make their queries with the same options",
-        "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh", "use the one that it was moved to",
+        "an image has pixels: give its size", "write to metres()", "make it of the depth image", "write to counts()", "repair the mesh", "use the one that it was moved to",
         "leave `deadline_seconds` out, or ask pose by pose", "give a number above 0, in N/m^3",
         "make both with `with_force`, or ask without", "give a closed mesh that is oriented outward",
         "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
