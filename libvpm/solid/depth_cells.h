@@ -45,12 +45,14 @@ struct DepthCell {
 class DepthCells {
  public:
   // Integrates over the part of a cell inside by halving cells across their longest edges:
-  // visitor.is_too_large(cell) tells that a cell is halved in any case, visitor.takes(cell) that it
-  // was dealt with. Else visitor.value(cell) is taken by visitor.take(cell, value) if it
-  // is_negligible(value), or if its halves' values say the same: agree(value, first, second), which
-  // leaves in `value` what is better. Else halves are treated alike. They share the bits of the
-  // points where segments cross from one to the other, and which corners lie inside follows from
-  // these points: so parts add up to the whole. `normal` points out of the triangle, of any length.
+  // a cell for which visitor.is_too_large(cell) holds is halved in any case, and one for which
+  // visitor.takes(cell) holds is finished, since the visitor has added it. Of any other cell
+  // visitor.value(cell) is computed. The visitor adds it by take(cell, value) if
+  // is_negligible(value), or if agree(value, first, second) finds that the values of both halves
+  // confirm it, which leaves the better one in `value`. Otherwise the same is done with each half.
+  // They share the bits of the points where segments cross from one to the other, and which corners
+  // lie inside follows from these points: so parts add up to the whole. `normal` points out of the
+  // triangle, of any length.
   template <class Visitor>
   void run(const DepthCell& cell, Vec3 normal, Visitor& visitor) {
     segments_.assign(cell.segments.begin(), cell.segments.end());

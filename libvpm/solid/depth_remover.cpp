@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -17,8 +18,9 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 // Factors by which noise alone changes a depth.
 constexpr float kLess = 1 - static_cast<float>(kEdgeGate),
                 kMore = 1 + static_cast<float>(kEdgeGate);
-// Ratio of inverse depths up to which a solid is widened at once, by the pixels that its nearest
-// place needs.
+// A margin in metres takes more pixels the nearer a place is. A solid whose greatest inverse depth
+// is at most this many times its least is widened as a whole, by the pixels that its nearest place
+// needs; others are widened in several ranges of depth.
 constexpr float kOneStep = 2.5F;
 
 // Depth, m, up to which no depth camera measures well, and the part of the image, 1 in so many,

@@ -349,7 +349,8 @@ void SolidImage::widen(int across, int down) {
              height = static_cast<std::size_t>(window_.height());
   take_least_below(numbers, width, height, 2 * down + 1);
   take_least_beside(numbers, width, height - 2 * static_cast<std::size_t>(down), 2 * across + 1);
-  // Each range is now that of the pixels to its right and below, so it belongs to their middle.
+  // Both passes left in each pixel the range of a rectangle that begins there. The range belongs to
+  // the rectangle's middle, from which `moved_` leads back to its first pixel.
   moved_ = static_cast<std::size_t>(down) * width + static_cast<std::size_t>(across);
 }
 

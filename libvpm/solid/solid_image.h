@@ -38,7 +38,8 @@ class DrawnSolid {
   double reach_;
 };
 
-// Pixels from (u0, v0) to before (u1, v1); may reach beyond an image.
+// Rectangle of pixels: columns from u0 to before u1 and rows from v0 to before v1. It may reach
+// beyond the image.
 struct PixelWindow {
   int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
 

@@ -304,7 +304,8 @@ class SurfacePair::CellVisitor {
   double most2_, sampled2_, small2_;  // squared longest edges, in the unit
 };
 
-// Adds the force on the part of a triangle inside, cell by cell.
+// Adds the force on that part of a triangle of solid `which` that lies inside of the other solid,
+// cell by cell.
 void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& cell, Vec3 normal) {
   CellVisitor visitor(*this, which, normal);
   cells_.run(cell, normal, visitor);

@@ -271,8 +271,9 @@ TEST(DepthRemover, RemovesWhatASolidHides) {
   EXPECT_GT(crossing, 3);
 }
 
-// A link that reaches from behind the camera far into the picture, displaced by the margin: what
-// another solid of the same depths is elsewhere in the picture stays.
+// Removes a link that begins behind the camera, reaches far into the picture and is displaced by
+// the margin. All of it goes, and what another solid of the same depths is elsewhere in the picture
+// stays.
 TEST(DepthRemover, RemovesALinkThroughTheCamerasPlane) {
   std::mt19937_64 random(13);
   const Solid link = synthetic::make_box(0.05, 0.06, 1.2);

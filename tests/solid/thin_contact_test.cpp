@@ -149,7 +149,8 @@ test::ConvexParts parts_of(const Solid& solid) {
              : test::one_part(solid);
 }
 
-// Both solids as what they are measured and judged by.
+// Two solids that touch along a line of approach: as the bodies that are measured, and as the
+// convex parts whose overlap gives the true force.
 class ThinContact {
  public:
   explicit ThinContact(const Thin& thin)
@@ -216,7 +217,8 @@ TEST(ThinContact, ForcesAreRightRelativeToThemselves) {
   }
 }
 
-// Along a closed path of poses in contact the force does no work: E is an energy.
+// Moves a solid along a closed path on which it always touches the other: the force may do no work
+// in all, since it is the gradient of an energy.
 TEST(ThinContact, ForcesDoNoWorkAlongClosedPaths) {
   for (auto& [name, contact] : prepared()) {
     SCOPED_TRACE(name);

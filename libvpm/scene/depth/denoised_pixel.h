@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "libvpm/cloud/depth_image.h"
 #include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
@@ -16,7 +17,7 @@ inline constexpr int kFillPasses = 2;
 // True if an inverse depth is that of an unmeasured pixel that may be closed: 0, but not the -0 of
 // one that was removed.
 VPM_HD inline bool is_hole(float inverse) {
-  return (inverse == 0) & (std::copysign(1.0F, inverse) > 0);
+  return (inverse == 0) & !is_removed(inverse);
 }
 
 // Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a
