@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "libvpm/cloud/window_span.h"
@@ -18,8 +19,6 @@
 
 namespace vpm {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 const Camera kSmallCamera{{525, 525, 15.5, 11.5}, 32, 24, {}};
 const Camera kWideCamera{{40, 50, 15.5, 11.5}, 32, 24, {}};
@@ -47,7 +46,7 @@ TEST_P(Normals, PlanesAreExactAtEveryTiltAndDistanceAndWindow) {
   for (const double tilt : {0.0, 20.0, 45.0, 70.0}) {
     for (const double turn : {0.0, 50.0, 200.0}) {
       for (const double distance : {0.01, 1.0, 50.0}) {
-        const double t = tilt * kPi / 180, a = turn * kPi / 180;
+        const double t = tilt * std::numbers::pi / 180, a = turn * std::numbers::pi / 180;
         const Vec3 normal{std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), -std::cos(t)};
         const DepthImage image = plane_image(kSmallCamera, normal, distance);
         for (const int window : {5, 7, 11}) {

@@ -37,19 +37,19 @@ class Spoiled {
   }
 
   Spoiled& replace_in_header(const std::string& from, const std::string& to) {
-    char* json = reinterpret_cast<char*>(bytes_.data()) + sizeof(Preamble) +
-                 table.size() * sizeof(ChunkEntry);
-    const std::size_t at = std::string(json, preamble.header_size).find(from);
+    char* header = reinterpret_cast<char*>(bytes_.data()) + sizeof(Preamble) +
+                   table.size() * sizeof(ChunkEntry);
+    const std::size_t at = std::string(header, preamble.header_size).find(from);
     if (at == std::string::npos || from.size() != to.size()) throw std::logic_error(from);
-    std::memcpy(json + at, to.data(), to.size());
+    std::memcpy(header + at, to.data(), to.size());
     return *this;
   }
 
-  Spoiled& set_header(std::string json) {
-    if (json.size() > preamble.header_size) throw std::logic_error(json);
-    json.resize(preamble.header_size, ' ');
-    std::memcpy(bytes_.data() + sizeof(Preamble) + table.size() * sizeof(ChunkEntry), json.data(),
-                json.size());
+  Spoiled& set_header(std::string header) {
+    if (header.size() > preamble.header_size) throw std::logic_error(header);
+    header.resize(preamble.header_size, ' ');
+    std::memcpy(bytes_.data() + sizeof(Preamble) + table.size() * sizeof(ChunkEntry), header.data(),
+                header.size());
     return *this;
   }
 

@@ -23,7 +23,7 @@ void run_cloud(Bytes input, const std::string& name, bool has_intrinsics) {
   });
 }
 
-constexpr std::size_t kMostPixels = 1024;  // largest image that is queried
+constexpr std::size_t kMostQueriedPixels = 1024;  // largest image that is queried
 
 // Reads the image alone, whatever its size, and imports it if it is small.
 template <class Parser>
@@ -32,7 +32,7 @@ void run_depth(Bytes input, const std::string& name, const Parser& parse) {
     const RawDepth raw = parse();
     if (raw.values.size() != std::size_t{raw.width} * raw.height)
       fail("an image has not the size that it says");
-    if (raw.values.size() > kMostPixels) return;
+    if (raw.values.size() > kMostQueriedPixels) return;
     ImportOptions options;
     options.intrinsics = {20, 20, 7.5, 5.5};
     expect_sound_answers(import_cloud(input, name, options).cloud, Choice(input));

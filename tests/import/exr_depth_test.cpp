@@ -69,7 +69,7 @@ const std::vector<float> kValues{1.5F, 0, kNaN, -2, kInfinity, 0.25F};
 RawDepth parse(const std::string& file, const std::string& channel = "") {
   return parse_exr_depth(bytes_of(file), "file", channel);
 }
-std::string refused(const std::string& file) {
+std::string refusal_of_exr(const std::string& file) {
   return test::refusal([&] { parse(file); });
 }
 
@@ -98,8 +98,8 @@ TEST(ExrDepth, TakesDepthByNameBesideAPicture) {
   EXPECT_TRUE(same_values(parse(file).values, kValues));
   EXPECT_EQ(parse(file, "R").values, grey);
   EXPECT_TRUE(says(test::refusal([&] { parse(file, "Q"); }), "B, G, R, depth.Z"));
-  EXPECT_TRUE(
-      says(refused(make_exr(3, 2, false, {{"Z", kValues}, {"depth.Z", grey}})), "Z, depth.Z"));
+  EXPECT_TRUE(says(refusal_of_exr(make_exr(3, 2, false, {{"Z", kValues}, {"depth.Z", grey}})),
+                   "Z, depth.Z"));
 }
 
 TEST(ExrDepth, SaysWhichOfALayersChannelsAreDepth) {
@@ -118,7 +118,8 @@ TEST(ExrDepth, SaysWhichOfALayersChannelsAreDepth) {
   ASSERT_EQ(image.remarks.size(), 1U);
   EXPECT_EQ(image.remarks[0].text,
             "depth is its channels WorldDepth.R, WorldDepth.G, WorldDepth.B, which are equal");
-  EXPECT_TRUE(says(refused(with_layer(none)), "name it with `channel`, such as WorldDepth.R"));
+  EXPECT_TRUE(
+      says(refusal_of_exr(with_layer(none)), "name it with `channel`, such as WorldDepth.R"));
   EXPECT_TRUE(same_values(parse(with_layer(none), "WorldDepth.R").values, kValues));
   EXPECT_TRUE(
       says(parse(make_exr(3, 2, false, {{"R", grey}, {"G", grey}, {"B", grey}})).remarks.at(0).text,
@@ -148,9 +149,10 @@ TEST(ExrDepth, PutsACropIntoItsDisplayWindow) {
 TEST(ExrDepth, RefusesWhatIsNoDepth) {
   std::vector<float> other = kValues;
   other[5] = 0.5F;
-  EXPECT_TRUE(says(refused(make_exr(3, 2, true, {{"R", kValues}, {"G", other}, {"B", kValues}})),
-                   "R, G and B differ at pixel (2, 1)"));
-  EXPECT_TRUE(says(refused(make_exr(3, 2, true, {{"A", kValues}})), "it has A"));
+  EXPECT_TRUE(
+      says(refusal_of_exr(make_exr(3, 2, true, {{"R", kValues}, {"G", other}, {"B", kValues}})),
+           "R, G and B differ at pixel (2, 1)"));
+  EXPECT_TRUE(says(refusal_of_exr(make_exr(3, 2, true, {{"A", kValues}})), "it has A"));
 }
 
 // Returns a header of one attribute, which says that it is this long and is not there.
@@ -164,7 +166,8 @@ std::string header_of_attribute(const std::string& type, std::uint32_t size) {
 TEST(ExrDepth, TakesNoMemoryForAttributesThatAreNotThere) {
   for (const char* type : {"opaque", "string", "floatvector", "preview", "chlist", "of others"}) {
     for (const std::uint32_t size : {61U, 0x7fffffffU, 0xffffffffU})
-      EXPECT_TRUE(says(refused(header_of_attribute(type, size)), "longer than the file")) << type;
+      EXPECT_TRUE(says(refusal_of_exr(header_of_attribute(type, size)), "longer than the file"))
+          << type;
   }
 }
 
@@ -174,7 +177,7 @@ TEST(ExrDepth, RefusesAttributesThatAreLongerThanTheirValue) {
   const std::size_t size = file.find("chlist") + 7;
   file[size] = static_cast<char>(file[size] + 4);
   file.insert(size + 4 + 19, "abc", 4);
-  EXPECT_TRUE(says(refused(file), "has 23 bytes, its value 19")) << refused(file);
+  EXPECT_TRUE(says(refusal_of_exr(file), "has 23 bytes, its value 19")) << refusal_of_exr(file);
 }
 
 TEST(ExrDepth, TakesNoMoreMemoryForAnImageThanItsFileMayAskFor) {
@@ -186,10 +189,11 @@ TEST(ExrDepth, TakesNoMoreMemoryForAnImageThanItsFileMayAskFor) {
     file.replace(value + 12, 4, reinterpret_cast<const char*>(&bottom), 4);
     return file;
   };
-  EXPECT_TRUE(says(refused(with_window("dataWindow", 8191, 8191)), "does not fit into the file"));
-  EXPECT_TRUE(says(refused(with_window("dataWindow", 268'000'000, 0)), "MB of memory"));
-  EXPECT_TRUE(says(refused(with_window("displayWindow", 8191, 8191)), "MB of memory"));
-  EXPECT_NE(refused(with_window("dataWindow", 0x7fffffff, 0x7fffffff)), "");
+  EXPECT_TRUE(
+      says(refusal_of_exr(with_window("dataWindow", 8191, 8191)), "does not fit into the file"));
+  EXPECT_TRUE(says(refusal_of_exr(with_window("dataWindow", 268'000'000, 0)), "MB of memory"));
+  EXPECT_TRUE(says(refusal_of_exr(with_window("displayWindow", 8191, 8191)), "MB of memory"));
+  EXPECT_NE(refusal_of_exr(with_window("dataWindow", 0x7fffffff, 0x7fffffff)), "");
 }
 
 // Without one, OpenEXR would take a value of its own: rows by sixteens, of a file of single rows.
@@ -197,7 +201,8 @@ TEST(ExrDepth, RefusesAHeaderThatLacksWhatDecidesItsMemory) {
   for (const std::string name : {"channels", "compression", "dataWindow", "displayWindow"}) {
     std::string file = make_exr(3, 2, false, {{"Z", kValues}});
     file[file.find(name + '\0')] = 'x';
-    EXPECT_TRUE(says(refused(file), "attribute " + name + " is missing")) << refused(file);
+    EXPECT_TRUE(says(refusal_of_exr(file), "attribute " + name + " is missing"))
+        << refusal_of_exr(file);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace vpm {
 namespace {
 
-const Intrinsics kCamera{100, 110, 9.5, 7.5};
+const Intrinsics kPlaneCamera{100, 110, 9.5, 7.5};
 constexpr std::uint32_t kWidth = 20, kHeight = 16;
 
 // Returns a tilted plane seen by the camera, as organised PCD in text.
@@ -22,7 +22,7 @@ std::string organised_pcd(double bend = 0) {
       "WIDTH 20\nHEIGHT 16\nVIEWPOINT 5 0 0 1 0 0 0\nPOINTS 320\nDATA ascii\n";
   for (std::uint32_t v = 0; v < kHeight; ++v) {
     for (std::uint32_t u = 0; u < kWidth; ++u) {
-      const Vec3 p = unproject(kCamera, u + bend * u * u, v, 1 + 0.002 * u + 0.003 * v);
+      const Vec3 p = unproject(kPlaneCamera, u + bend * u * u, v, 1 + 0.002 * u + 0.003 * v);
       char line[128];
       std::snprintf(line, sizeof line, u == 3 && v == 4 ? "nan nan nan\n" : "%.9g %.9g %.9g\n", p.x,
                     p.y, p.z);
@@ -133,7 +133,7 @@ TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
   ImportOptions options;
   options.intrinsics = Intrinsics{150, 150, 9.5, 7.5};
   EXPECT_TRUE(says(refused(organised_pcd(), options), "do not fit the intrinsics given"));
-  options.intrinsics = kCamera;
+  options.intrinsics = kPlaneCamera;
   EXPECT_FALSE(import(organised_pcd(), options).intrinsics_recovered);
 }
 
@@ -141,7 +141,7 @@ TEST(ImportCloud, TellsAGridThatIsTurnedOrMirrored) {
   const auto said = [](const auto& change) {
     const std::string without = refused(changed_pcd(change));
     ImportOptions options;
-    options.intrinsics = kCamera;
+    options.intrinsics = kPlaneCamera;
     EXPECT_EQ(refused(changed_pcd(change), options), without) << "no camera would help";
     return without;
   };
@@ -178,7 +178,7 @@ TEST(ImportCloud, LeavingIntrinsicsOutIsAdvisedWhereItHelps) {
 TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {
   EXPECT_EQ(test::kind_of_fault([] { import(depth_png()); }), ErrorKind::invalid_argument);
   ImportOptions options;
-  options.intrinsics = kCamera;
+  options.intrinsics = kPlaneCamera;
   options.to_world = Pose{{}, {1, 2, 3}};
   const ImportedCloud imported = import(depth_png(), options);
   EXPECT_EQ(imported.width, kWidth);
@@ -259,7 +259,7 @@ TEST(ImportCloud, SaysThatNumbersAreTooCoarseForThePoints) {
 
 TEST(ImportCloud, SaysWhichOptionsAreNotUsed) {
   ImportOptions options;
-  options.intrinsics = kCamera;
+  options.intrinsics = kPlaneCamera;
   options.axes = CameraAxes::opengl;
   EXPECT_TRUE(says(said(depth_png(), options), "`axes` is not used"));
   options.to_world = Pose{};
@@ -307,7 +307,7 @@ TEST(ImportCloud, TheSizeOfACalibrationTellsWhatWasDone) {
 
 TEST(ImportCloud, SaysWhyNothingIsMeasured) {
   ImportOptions options;
-  options.intrinsics = kCamera;
+  options.intrinsics = kPlaneCamera;
   EXPECT_TRUE(
       says(refused(make_png(20, 16, 16, std::vector<std::uint16_t>(320)), options), "all are 0"));
   options.depth.nearest = 100;
@@ -318,7 +318,7 @@ TEST(ImportCloud, SaysWhyNothingIsMeasured) {
   append(negative, -2.F);
   EXPECT_TRUE(says(refused(negative, options), "all are negative"));
   ImportOptions metres_per_unit;
-  metres_per_unit.intrinsics = kCamera;
+  metres_per_unit.intrinsics = kPlaneCamera;
   metres_per_unit.depth.units_per_metre = 0.001;
   std::vector<std::uint16_t> near(320, 500);
   EXPECT_TRUE(says(said(make_png(20, 16, 16, near), metres_per_unit), "give 1000"));
@@ -338,7 +338,7 @@ TEST(ImportCloud, RefusesWhatHoldsNoCloud) {
                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
                    "need normals"));
   ImportOptions options;
-  options.intrinsics = kCamera;
+  options.intrinsics = kPlaneCamera;
   std::vector<std::uint16_t> nothing(320, 0);
   EXPECT_TRUE(
       says(refused(make_png(20, 16, 16, nothing), options), "no pixel holds a measurement"));

@@ -16,7 +16,7 @@ using testing::generic_rotation;
 using testing::lattice_cube;
 using testing::see;
 
-constexpr double kEdge = 0.1, kStep = 0.002;
+constexpr double kToolEdge = 0.1, kStep = 0.002;
 
 QueryOptions coherent() {
   QueryOptions options;
@@ -35,7 +35,7 @@ std::vector<Pose> through_the_wall(double deepest) {
 
 TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   const AnyBody cloud(see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
   int near = 0, far = 0;  // poses wholly behind the wall, within the tool radius and beyond
   for (const Pose& pose : through_the_wall(1.6)) {
@@ -59,7 +59,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
 
 TEST(CoherentPoses, ForgetWhenTold) {
   const AnyBody cloud(see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.3);
   for (std::size_t k = 0; k < path.size() / 2; ++k) query.run(cloud, path[k]);
@@ -135,7 +135,7 @@ Cloud wall_at(double z) {
 
 // Shows a moving wall, a frame every 33 poses, and then a hand in front of the lens.
 TEST(CoherentPoses, FollowFramesThatChange) {
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.4);
   AnyBody cloud(wall_at(1));
@@ -163,7 +163,7 @@ template <class MakeFrame>
 void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   constexpr int kQueriesPerFrame = 33;
   constexpr double kWallStep = 0.015;
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
   int cut = 0, wholly_behind = 0, lost = 0, k = 0;
   const auto query_frame = [&](double z) {
@@ -209,7 +209,7 @@ TEST(CoherentPoses, AreRightWhileTheCameraMoves) {
 // Earlier frames' knowledge of a tool deep inside ends with the frame that shows the tool to be
 // free, or shows nothing; no later frame brings it back.
 TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   const AnyBody wall(small_view(1)), far_wall(small_view(2)), hand(small_view(0.4)),
       nothing(small_view(-1));
   const Pose deep{generic_rotation(), {0, 0, 1.2}};
@@ -227,7 +227,7 @@ TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
 
 // A wall that jumps over the tool within a frame was not seen to pass it.
 TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
-  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const ToolModel tool = lattice_cube(kToolEdge, 6, 3);
   ToolQuery query(tool, coherent());
   const Pose pose{generic_rotation(), {0, 0, 1}};
   EXPECT_EQ(query.run(AnyBody(small_view(1.2)), pose).volume, 0);
@@ -235,7 +235,7 @@ TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
 }
 
 TEST(CoherentPoses, AreRefusedWhereTheyMeanNothing) {
-  const ToolModel tool = lattice_cube(kEdge, 2, 2);
+  const ToolModel tool = lattice_cube(kToolEdge, 2, 2);
   QueryOptions options = coherent();
   options.measure = Measure::paper;
   EXPECT_THROW(ToolQuery(tool, options), Error);

@@ -13,8 +13,8 @@
 namespace vpm {
 namespace {
 
-constexpr double kReach = 0.02;  // radius of the clusters, m
-constexpr double kSpacing = 0.002;
+constexpr double kClusterRadius = 0.02;  // radius of the clusters, m
+constexpr double kPointSpacing = 0.002;
 
 class Noise {
  public:
@@ -34,11 +34,11 @@ void add_points(const std::function<Height(double x, double y)>& at, Cloud& clou
   constexpr int kHalf = 30;
   for (int i = -kHalf; i <= kHalf; ++i) {
     for (int k = -kHalf; k <= kHalf; ++k) {
-      const double x = kSpacing * i, y = kSpacing * k;
+      const double x = kPointSpacing * i, y = kPointSpacing * k;
       const Height h = at(x, y);
       cloud.positions.push_back(narrow(Vec3{x, y, h.height}));
       cloud.normals.push_back(narrow(normalized_or_zero(h.normal)));
-      cloud.radii.push_back(static_cast<float>(kSpacing));
+      cloud.radii.push_back(static_cast<float>(kPointSpacing));
     }
   }
 }
@@ -60,8 +60,8 @@ Cloud noisy_wall(double height, double slope) {
 bool sees_plane(const Cloud& cloud, Vec3 center, TangentPlane& plane) {
   const PointsBody prepared(cloud);
   const DiskSurface disks = prepared.surface();
-  return finds_cluster_plane(disks, disks.classify_ball(center, kReach), center, kReach, HUGE_VAL,
-                             SampleInTurn{}, plane);
+  return finds_cluster_plane(disks, disks.classify_ball(center, kClusterRadius), center,
+                             kClusterRadius, HUGE_VAL, SampleInTurn{}, plane);
 }
 
 TEST(PatchOfPoints, NoiseIsAveraged) {
@@ -86,7 +86,7 @@ TEST(PatchOfPoints, IsAsHighAsACurvedSurfaceInTheMean) {
   TangentPlane plane;
   ASSERT_TRUE(sees_plane(cloud, {}, plane));
   // This is the mean of the sagitta (x^2 + y^2) / 2r over a cube in the ball.
-  const double sagitta = kReach * kReach / (9 * kRadius);
+  const double sagitta = kClusterRadius * kClusterRadius / (9 * kRadius);
   EXPECT_NEAR(plane.foot.z, -sagitta, 0.1 * sagitta);
 }
 
@@ -126,13 +126,13 @@ TEST(PatchOfPoints, ThereIsNoneBeyondTheRim) {
 // Everything behind the wall is pushed, nothing in front of it, and the cut cells by the mean
 // plane.
 TEST(PatchOfPoints, CountsWhatIsBehindANoisyWall) {
-  constexpr double kEdge = 0.08;
+  constexpr double kToolSide = 0.08;
   const PointsBody prepared(noisy_wall(0.001, 0.1));
-  const ToolModel tool = testing::lattice_cube(kEdge, 24, 2);
+  const ToolModel tool = testing::lattice_cube(kToolSide, 24, 2);
   ToolQuery query(tool, {});
   for (const double depth : {0.01, 0.02, 0.04}) {
-    const Result result = query.run(prepared, {{}, {0.001, 0.002, kEdge / 2 - depth}});
-    EXPECT_NEAR(result.volume_fraction, depth / kEdge, 0.001) << depth;
+    const Result result = query.run(prepared, {{}, {0.001, 0.002, kToolSide / 2 - depth}});
+    EXPECT_NEAR(result.volume_fraction, depth / kToolSide, 0.001) << depth;
     const Vec3 push = normalized_or_zero(result.wrench.force);
     EXPECT_GT(push.z, std::cos(0.02)) << depth;
   }

@@ -265,23 +265,23 @@ Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
 
 // A piece below the edge of a roof is cut by both walls, and neither has it alone.
 TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
-  constexpr double kEdge = 0.012;
+  constexpr double kToolSide = 0.012;
   const TwoWalls roof{true};
   const PointsBody cloud(roof.seen());
-  const ToolModel piece = testing::lattice_cube(kEdge, 1, 1);
+  const ToolModel piece = testing::lattice_cube(kToolSide, 1, 1);
   ToolQuery query(piece, {});
   for (const double x : {-0.001, 0.0, 0.0015}) {
     const Pose pose{{}, {x, 0.0013, -0.004}};
     const Vec3 force = query.run(cloud, pose).wrench.force;
-    EXPECT_LT(angle(force, true_force(roof, kEdge, pose).force), 9 * kDegree) << x;
+    EXPECT_LT(angle(force, true_force(roof, kToolSide, pose).force), 9 * kDegree) << x;
   }
 }
 
 // Most of the cube's 27 cells reach both walls. Pushed whole to the nearest one, the force's
 // direction would err by up to 10 degrees.
 TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
-  constexpr double kEdge = 0.06;
-  const ToolModel cube = testing::lattice_cube(kEdge, 3, 4);
+  constexpr double kToolSide = 0.06;
+  const ToolModel cube = testing::lattice_cube(kToolSide, 3, 4);
   ToolQuery query(cube, {});
   for (const bool is_roof : {true, false}) {
     const TwoWalls walls{is_roof};
@@ -289,7 +289,7 @@ TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
     for (const double x : {-0.013, -0.006, 0.004, 0.011}) {
       for (const double z : {-0.012, -0.021}) {
         const Pose pose{{}, {x, 0.0013, is_roof ? z : z + 0.02}};
-        const Wrench truth = true_force(walls, kEdge, pose);
+        const Wrench truth = true_force(walls, kToolSide, pose);
         const Result result = query.run(cloud, pose);
         const Vec3 force = 1 / cube.volume * result.wrench.force,
                    torque = 1 / cube.volume * result.wrench.torque;

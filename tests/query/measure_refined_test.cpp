@@ -21,7 +21,7 @@ using testing::generic_rotation;
 using testing::lattice_cube;
 using testing::see;
 
-constexpr double kEdge = 0.2;
+constexpr double kCubeEdge = 0.2;
 constexpr double kDegrees = 1;         // bound of the force's direction
 constexpr double kNotNearZero = 0.03;  // fraction of the tool's volume above which the bound holds
 
@@ -39,8 +39,8 @@ TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
   const synthetic::Scene scene = synthetic::make_scene(c.scene);
   const Cloud seen = see(scene);
   const AnyBody cloud(c.camera ? seen : without_camera(seen));
-  const ToolModel tool = lattice_cube(kEdge, 10, 4);
-  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 4);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kCubeEdge));
   ToolQuery query(tool, {});
   double last_error = 0;
   for (int k = 0; k <= 24; ++k) {
@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(RefinedMeasure, FewLargeCellsDoNotTakeAStepForAPlane) {
   const synthetic::Scene scene = synthetic::make_scene("step");
   const AnyBody cloud(see(scene));
-  const ToolModel tool = lattice_cube(kEdge, 2, 8);
-  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  const ToolModel tool = lattice_cube(kCubeEdge, 2, 8);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kCubeEdge));
   ToolQuery query(tool, {});
   for (int k = 0; k < 40; ++k) {
     const Pose pose{generic_rotation(), {-0.07 + 0.004 * k, 0.01, 0.93 + 0.002 * (k % 7)}};
@@ -120,7 +120,7 @@ TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
 
 TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   const AnyBody cloud(see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  const ToolModel tool = lattice_cube(kCubeEdge, 6, 2);
   const Result r = ToolQuery(tool, {}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
   EXPECT_EQ(r.volume, 0);
   EXPECT_EQ(r.boundary + r.inside, 0u);
@@ -158,8 +158,8 @@ double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, doubl
 // front, the front supports deeper places.
 TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
   const AnyBody cloud(see(synthetic::make_scene("block")));
-  const ToolModel tool = lattice_cube(kEdge, 10, 3);
-  const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 3);
+  const std::vector<Vec3> places = testing::places_in_cube(kCubeEdge, 40);
   for (const double z : {0.98, 1.0, 1.18, 1.23}) {
     ToolQuery query(tool, {});
     double before = 0, expected_before = 0, most = 0;
@@ -184,8 +184,8 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
   // Half of the tool touches the wall in sight; the block in front hides the other half.
   const synthetic::Scene scene = synthetic::make_scene("block");
   const AnyBody cloud(see(scene));
-  const ToolModel tool = lattice_cube(kEdge, 10, 2);
-  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 2);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kCubeEdge));
   ToolQuery query(tool, {});
   for (int k = 0; k <= 20; ++k) {
     const Pose pose{generic_rotation(), {0.15, 0.01, 1.36 + 0.005 * k}};
@@ -200,7 +200,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
 
 TEST(RefinedMeasure, DoesNotJumpWhileAToolInTheWallPassesBehindAnObject) {
   const AnyBody cloud(see(synthetic::make_scene("block")));
-  const ToolModel tool = lattice_cube(kEdge, 10, 2);
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 2);
   ToolQuery query(tool, {});
   double before = 0;
   for (int k = 0; k <= 80; ++k) {
@@ -219,7 +219,7 @@ TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   // Into a wall the energy is E(d) = integral of V, so the force must be V along the normal at
   // every pose.
   const AnyBody cloud(see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 8, 3);
+  const ToolModel tool = lattice_cube(kCubeEdge, 8, 3);
   ToolQuery query(tool, {});
   for (int k = 0; k < 10; ++k) {
     const Result r = query.run(cloud, {generic_rotation(), {0, 0, 0.9 + 0.02 * k}});
@@ -231,7 +231,7 @@ TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
 TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
   const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
   const Vec3 normal = scene.surface->gradient({0, 0, 1.1});
-  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 4);
   double sum = 0;
   constexpr int kPoses = 24;
   for (int k = 0; k < kPoses; ++k) {
@@ -293,12 +293,12 @@ TEST(RefinedMeasure, FindsTheBottomOfAGrooveUnderNoise) {
 double energy(const Pose& pose, const synthetic::Surface& surface) {
   constexpr int kSteps = 80;
   double sum = 0;
-  const auto at = [](int k) { return ((k + 0.5) / kSteps - 0.5) * kEdge; };
+  const auto at = [](int k) { return ((k + 0.5) / kSteps - 0.5) * kCubeEdge; };
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j)
       for (int k = 0; k < kSteps; ++k)
         sum -= std::min(surface.distance(pose * Vec3{at(i), at(j), at(k)}), 0.0);
-  return sum * std::pow(kEdge / kSteps, 3);
+  return sum * std::pow(kCubeEdge / kSteps, 3);
 }
 
 Rotation turn_about(Vec3 axis, double angle) {
@@ -308,7 +308,7 @@ Rotation turn_about(Vec3 axis, double angle) {
 
 // Small motions and turns of the tool take as much from the energy as force and torque do work.
 TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
-  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 4);
   ToolQuery query(tool, {});
   constexpr double kMove = 0.004, kTurn = 0.02;  // metres, radians
   for (const char* name : {"tilted-wall", "inverted-ball", "ball", "groove"}) {
@@ -334,7 +334,7 @@ TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
 
 TEST(RefinedMeasure, HolesDoNotLeak) {
   Cloud cloud = see(synthetic::make_scene("wall"));
-  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  const ToolModel tool = lattice_cube(kCubeEdge, 10, 4);
   const Pose pose{generic_rotation(), {0, 0, 0.95}};
   const double whole = ToolQuery(tool, {}).run(AnyBody(cloud), pose).volume;
   for (std::size_t i = 0; i < cloud.sensor->depth.depth.size(); i += 7)
