@@ -103,6 +103,11 @@ template <class Get>
   return {Float4{a.x, b.x, c.x, d.x}, Float4{a.y, b.y, c.y, d.y}, Float4{a.z, b.z, c.z, d.z}};
 }
 
+[[gnu::always_inline]] inline Int4 gather(const std::uint32_t* row, const Int4& i) {
+  return Int4{static_cast<std::int32_t>(row[i[0]]), static_cast<std::int32_t>(row[i[1]]),
+              static_cast<std::int32_t>(row[i[2]]), static_cast<std::int32_t>(row[i[3]])};
+}
+
 [[gnu::always_inline]] inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -69,6 +69,10 @@ template <class Get>
 [[gnu::always_inline]] VPM_HD inline Vec3f gather(const Vec3f* row, std::int32_t i) {
   return row[i];
 }
+// Returns a number below 2^31.
+[[gnu::always_inline]] VPM_HD inline std::int32_t gather(const std::uint32_t* row, std::int32_t i) {
+  return static_cast<std::int32_t>(row[i]);
+}
 
 }  // namespace vpm
 

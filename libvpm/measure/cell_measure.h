@@ -194,7 +194,7 @@ class CellMeasure {
     PieceSample sampled{x, on_surface};
     sampled.is_inside = on_surface.known && side_of(piece, on_surface) != PlaneSide::before;
     if (!sampled.is_inside) return sampled;
-    sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_radius_);
+    sampled.is_far = is_far_behind(surface_, x, on_surface.distance, tool_radius_);
     return sampled;
   }
   // Adds a block or cell on the free side of the surface, which is taken whole: where the sight of

@@ -184,10 +184,12 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
   return side != PlaneSide::before && is_seen_free() ? PlaneSide::before : side;
 }
 
-// True if a place at this signed distance, m, is inside only if a plane supports it.
+// True if a place x at this signed distance, m, is inside only if a plane supports it.
 template <class Surface>
-VPM_HD bool is_far_behind(double signed_distance, const ToolRadius& tool) {
-  return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);
+VPM_HD bool is_far_behind(const Surface& surface, Vec3 x, double signed_distance,
+                          const ToolRadius& tool) {
+  return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length) &&
+         !is_seen_behind_from_sides(surface, x);
 }
 // True if a body of this radius, m, is divided between two walls; smaller ones are pushed to one.
 VPM_HD inline bool is_divisible(double radius, const ToolRadius& tool) {
@@ -223,7 +225,7 @@ VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface:
   if (!surface.may_be_flat(in_ball)) return BlockClass::ambiguous;
   const double most = kFlatness * tool.length, tolerance = radius < most ? radius : most;
   if (!surface.is_flat(in_ball, read, tolerance, plane) ||
-      is_far_behind<Surface>(plane.distance(center), tool))
+      is_far_behind(surface, center, plane.distance(center), tool))
     return BlockClass::ambiguous;
   OtherWall other;
   return is_divisible(radius, tool) && finds_other_wall(surface, center, plane, in_ball.point,

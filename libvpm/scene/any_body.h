@@ -15,6 +15,7 @@
 #include "libvpm/scene/body.h"
 #include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/scene/points/points_body.h"
+#include "libvpm/scene/rig/rig_body.h"
 
 namespace vpm {
 
@@ -54,7 +55,7 @@ struct KindsOfBody {
   static constexpr bool kHas = (std::same_as<B, Kind> || ...);
 };
 // The one list of kinds.
-using BodyKinds = KindsOfBody<DepthBody, PointsBody>;
+using BodyKinds = KindsOfBody<DepthBody, PointsBody, RigBody>;
 
 // Handle of a body of any kind.
 class AnyBody {

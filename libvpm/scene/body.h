@@ -2,11 +2,11 @@
 // it learns of the surface. DepthSurface (a camera's image, by projection) and DiskSurface (points
 // without a camera, by the nearest disk) answer; README.md has the reasons.
 //
-// MeasuredBody is the concept; SeesFreeSpace, TellsSight, BoundsGap and HasOtherWalls are what some
-// bodies know besides; SharesPixels, what is faster so. The functions below ask for these and
-// answer for bodies that do not have them; such an answer costs work or leaves a refinement out,
-// and is never wrong. All members are const and may be called by many threads at once. Places are
-// in the body's own frame, m.
+// MeasuredBody is the concept; SeesFreeSpace, TellsSight, KnowsDepths, BoundsGap and HasOtherWalls
+// are what some bodies know besides; SharesPixels, what is faster so. The functions below ask for
+// these and answer for bodies that do not have them; such an answer costs work or leaves a
+// refinement out, and is never wrong. All members are const and may be called by many threads at
+// once. Places are in the body's own frame, m.
 #pragma once
 
 #include <concepts>
@@ -188,6 +188,12 @@ concept TellsSight = MeasuredBody<B> &&
   { B::sight_of(in_ball) } -> std::same_as<Sight>;
 };
 
+// True for a body that may know a place behind the surface to be inside however deep it lies.
+template <class B>
+concept KnowsDepths = MeasuredBody<B> && requires(const B& body, Vec3 x) {
+  { body.is_seen_behind_from_sides(x) } -> std::same_as<bool>;
+};
+
 // True for a body whose side_of() asks pixels of an ambiguous ball, which lanes of a device share:
 // may_be_seen_past() rules most balls out, and is_seen_past() tests the rows first, first + step,
 // ... of pixels_of() a ball against a depth, which is that of the farthest place in the ball.
@@ -280,6 +286,14 @@ VPM_HD Sight sight_of(const typename B::BallClass& in_ball) {
     return B::sight_of(in_ball);
   else
     return Sight::seen;
+}
+// True if a place behind the surface is inside however deep it lies.
+template <MeasuredBody B>
+VPM_HD bool is_seen_behind_from_sides(const B& body, Vec3 x) {
+  if constexpr (KnowsDepths<B>)
+    return body.is_seen_behind_from_sides(x);
+  else
+    return false;
 }
 // Returns a bound of the distance, m, from any place of a classified ball to the foot of its
 // surface sample; infinite where the body knows none.

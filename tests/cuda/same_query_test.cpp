@@ -15,6 +15,7 @@
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/query/replay.h"
+#include "tests/query/ring_of_cameras.h"
 #include "tests/refusal.h"
 #include "tests/test_name.h"
 
@@ -111,6 +112,30 @@ TEST_P(SameQuery, OnCpuAndDevice) {
   }
   EXPECT_GE(boundary, testing::expected_of(1000));
   EXPECT_GE(inside, testing::expected_of(1000));
+}
+
+TEST(SameQueryOfARig, OnCpuAndDevice) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const auto scene = synthetic::make_union(
+      {synthetic::make_block({0.24, 0.18, 0.2}, {testing::generic_rotation(), {}}),
+       synthetic::make_block({0.004, 0.2, 0.2}, {{}, {0.25, 0.03, 0.02}}),
+       synthetic::make_inverted_ball({}, 1.5)});
+  std::vector<Camera> cameras = testing::ring_of_cameras(3);
+  for (Camera& camera : cameras) {
+    camera.intrinsics = {131, 131, 79.5, 59.5};
+    camera.width = 160, camera.height = 120;
+  }
+  const AnyBody rig(RigBody(testing::images_of(*scene, cameras)));
+  std::vector<Pose> poses;
+  for (int k = 0; k < testing::effort(48); ++k) {
+    Pose pose = pose_of(k);
+    pose.translation.z -= 1;
+    poses.push_back(pose);
+  }
+  double most = 0;
+  for (const Result& found : same_answers(testing::lattice_cube(0.12, 9, 3), rig, poses))
+    most = std::max(most, found.volume_fraction);
+  EXPECT_GT(most, 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,

@@ -14,6 +14,10 @@ using FourSamples = SurfaceSampleOf<Double4>;
 [[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});
 }
+[[gnu::always_inline]] inline FourSamples sample_at(const RigSurface::View& surface,
+                                                    const Vec3x4& x) {
+  return surface.rig->sample_near(x, surface.cameras);
+}
 // Joins four known samples into lanes.
 [[gnu::always_inline]] inline FourSamples joined(const SurfaceSample& a, const SurfaceSample& b,
                                                  const SurfaceSample& c, const SurfaceSample& d) {
@@ -30,6 +34,52 @@ using FourSamples = SurfaceSampleOf<Double4>;
   if (four.known[lane] == 0) return {};
   return {true, four.distance[lane], four.normal.of(lane), four.foot.of(lane),
           static_cast<std::uint32_t>(four.point[lane])};
+}
+
+template <class Surface>
+[[gnu::always_inline]] inline void sample_lanes(const Surface& surface, const Vec3 (&places)[4],
+                                                SurfaceSample (&on_surface_at)[4]) {
+  const FourSamples four = sample_at(surface, {places[0], places[1], places[2], places[3]});
+  for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
+}
+
+template <class Surface>
+[[gnu::always_inline]] inline std::uint32_t sample_lanes(const Surface& surface,
+                                                         const Pose& to_surface,
+                                                         std::span<const CellSample> samples,
+                                                         SurfaceOfSample* on_surface_at) {
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  std::uint32_t found = 0;
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(samples, first);
+    const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
+    const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
+    const FourSamples four = sample_at(surface, x);
+    const Mask4 wanted = negated(four.known) |
+                         (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
+    if (!any(wanted)) continue;
+    for (int k = 0; k < kFour && first + k < count; ++k) {
+      if (wanted[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
+    }
+  }
+  return found;
+}
+
+// Adds the parts that were not seen at their centroids.
+template <class Surface>
+[[gnu::always_inline]] inline void add_unseen_lanes(const Surface& surface, const Pose& to_surface,
+                                                    const FreeParts& parts, UnseenSum& unseen) {
+  static_assert(FreeParts::kPadding >= kFour - 1);
+  for (std::size_t first = 0; first < parts.count; first += kFour) {
+    const Vec3x4 centroid(load<Double4>(parts.x + first), load<Double4>(parts.y + first),
+                          load<Double4>(parts.z + first));
+    const auto [is_in_image, is_seen] = surface.view_of(to_surface * centroid);
+    if (all(is_seen)) continue;
+    for (std::size_t k = 0; k < kFour && first + k < parts.count; ++k) {
+      if (is_seen[k] == 0)
+        unseen.add(parts.weight[first + k], is_in_image[k] != 0 ? Sight::hole : Sight::out_of_view);
+    }
+  }
 }
 
 // Holds four rows of partial sums, one in each lane.
@@ -51,44 +101,38 @@ struct FourRows {
 VPM_VECTOR_CLONES
 void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]) {
-  const FourSamples four = sample_at(surface, {places[0], places[1], places[2], places[3]});
-  for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
+  sample_lanes(surface, places, on_surface_at);
+}
+VPM_VECTOR_CLONES
+void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]) {
+  sample_lanes(surface, places, on_surface_at);
+}
+void sample_four(const RigSurface& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]) {
+  sample_four(RigSurface::View{&surface, surface.all_cameras()}, places, on_surface_at);
 }
 
 VPM_VECTOR_CLONES
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
-  const auto count = static_cast<std::uint32_t>(samples.size());
-  std::uint32_t found = 0;
-  for (std::uint32_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(samples, first);
-    const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
-    const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const FourSamples four = sample_at(surface, x);
-    const Mask4 wanted = negated(four.known) |
-                         (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
-    if (!any(wanted)) continue;
-    for (int k = 0; k < kFour && first + k < count; ++k) {
-      if (wanted[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
-    }
-  }
-  return found;
+  return sample_lanes(surface, to_surface, samples, on_surface_at);
+}
+VPM_VECTOR_CLONES
+std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
+                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
+  return sample_lanes(surface, to_surface, samples, on_surface_at);
 }
 
 VPM_VECTOR_CLONES
 void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,
                 UnseenSum& unseen) {
-  static_assert(FreeParts::kPadding >= kFour - 1);
-  for (std::size_t first = 0; first < parts.count; first += kFour) {
-    const Vec3x4 centroid(load<Double4>(parts.x + first), load<Double4>(parts.y + first),
-                          load<Double4>(parts.z + first));
-    const auto [is_in_image, is_seen] = surface.view_of(to_surface * centroid);
-    if (all(is_seen)) continue;
-    for (std::size_t k = 0; k < kFour && first + k < parts.count; ++k) {
-      if (is_seen[k] == 0)
-        unseen.add(parts.weight[first + k], is_in_image[k] != 0 ? Sight::hole : Sight::out_of_view);
-    }
-  }
+  add_unseen_lanes(surface, to_surface, parts, unseen);
+}
+VPM_VECTOR_CLONES
+void add_unseen(const RigSurface& surface, const Pose& to_surface, const FreeParts& parts,
+                UnseenSum& unseen) {
+  add_unseen_lanes(surface, to_surface, parts, unseen);
 }
 
 VPM_VECTOR_CLONES
@@ -102,6 +146,11 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> p
                       joined(a.on_surface, b.on_surface, c.on_surface, d.on_surface));
     for (int k = 0; k < kFour && first + k < count; ++k) normals[first + k] = normal.of(k);
   }
+}
+
+void closest_normals(const RigSurface& surface, std::span<const PlaceSample> places,
+                     Vec3* normals) {
+  for (const auto& [x, on_surface] : places) *normals++ = surface.closest_normal(x, on_surface);
 }
 
 VPM_VECTOR_CLONES

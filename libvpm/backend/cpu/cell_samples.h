@@ -1,5 +1,5 @@
-// Samples a camera's surface, and adds samples of a cell's blocks, at many places at once by
-// vectors, with the bits of DepthSurface and SamplesInTurn. Host only.
+// Samples the surface that a camera sees, or several do, and adds samples of a cell's blocks, at
+// many places at once by vectors, with the bits of these surfaces and SamplesInTurn. Host only.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "libvpm/measure/cell_measure.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/rig/rig_surface.h"
 
 namespace vpm {
 
@@ -27,16 +28,23 @@ struct SurfaceOfSample {
 
 void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]);
+void sample_four(const RigSurface& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]);
+void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]);
 
 // Samples the surface for those tool samples that it reaches, whose distance is less than their
 // radius, and those where none is known. Writes them in order to `on_surface_at` and returns their
 // number.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
+std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
+                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
 
-// Writes DepthSurface::closest_normal of each sampled place.
+// Writes closest_normal() of each sampled place.
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals);
+void closest_normals(const RigSurface& surface, std::span<const PlaceSample> places, Vec3* normals);
 
 // Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
@@ -44,6 +52,8 @@ ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples
 
 // Adds those parts of the tool that are free and were not seen at their centroids.
 void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,
+                UnseenSum& unseen);
+void add_unseen(const RigSurface& surface, const Pose& to_surface, const FreeParts& parts,
                 UnseenSum& unseen);
 
 // True for a surface that vectors sample at several places at once.
@@ -166,14 +176,14 @@ struct SamplesOneByOne : SamplesInTurn {
   static constexpr auto* clipped = clipped_moments;
 };
 
-// Adds the samples of one cell before a camera, by vectors.
+// Adds the samples of one cell before cameras, by vectors.
 class SamplesTogether {
  public:
   static constexpr auto* clipped = clipped_moments;
 
-  template <class Measure>
-  void add(const Measure& measure, const SampleRange& range, const DepthSurface& surface,
-           PieceIndex* far, CellResult& result) {
+  template <class Measure, class Near>
+  void add(const Measure& measure, const SampleRange& range, const Near& surface, PieceIndex* far,
+           CellResult& result) {
     neighbors_ = kNone;  // a new block begins
     for (std::uint32_t first = range.begin; first < range.end; first += kAtOnce) {
       const std::uint32_t some = std::min(range.end - first, kAtOnce);
@@ -190,7 +200,8 @@ class SamplesTogether {
     if (direction_count_ == 0) return;
     Vec3 normals[kAtOnce];
     closest_normals(measure.surface(), {searched_, direction_count_}, normals);
-    static_assert(!HasOtherWalls<DepthSurface>);  // push() divides none
+    static_assert(!HasOtherWalls<DepthSurface> &&
+                  !HasOtherWalls<RigSurface>);  // push() divides none
     for (std::uint32_t k = 0; k < pushed_count_; ++k) {
       measure.add_pushed(piece_of(*pushed_[k].sample), normals[pushed_[k].direction], result.sum);
     }

@@ -69,4 +69,17 @@ DevicePointsBody::DevicePointsBody(const PreparedPoints& points) : surface_(poin
   surface_.seconds = memory_.copy(denoised.seconds);
 }
 
+DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
+  const auto count = static_cast<std::size_t>(surface_.count);
+  std::vector<RigCamera> cameras(surface_.cameras, surface_.cameras + count);
+  images_.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ImageSilhouettes& found = rig.silhouettes()[i];
+    cameras[i].image = images_.emplace_back(rig.images()[i].prepared()).surface();
+    cameras[i].silhouettes = {memory_.copy(found.pixels()), memory_.copy(found.nearest())};
+  }
+  surface_.cameras = memory_.copy(cameras);
+  surface_.agreement = memory_.copy(rig.agreement().of_pairs);
+}
+
 }  // namespace vpm::cuda

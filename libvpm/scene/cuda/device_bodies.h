@@ -52,6 +52,18 @@ class DevicePointsBody {
   DiskSurface surface_;
 };
 
+// Holds the images of several cameras. Copies them even where they were made on a device.
+class DeviceRigBody {
+ public:
+  explicit DeviceRigBody(const PreparedRig& rig);
+  const RigSurface& surface() const { return surface_; }
+
+ private:
+  std::vector<DeviceDepthBody> images_;
+  DeviceMemory memory_;
+  RigSurface surface_;
+};
+
 // Returns the copy of a body on the current device, shared by all queries that hold it.
 template <class Kind>
 std::shared_ptr<const typename Kind::OnDevice> on_device(const Kind& body) {

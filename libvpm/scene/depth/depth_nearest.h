@@ -74,6 +74,8 @@ class FootSearch {
     if (any(is_not)) turn_back(next, is_not);
   }
 
+  // Returns the squared distance, m^2, of the foot that was found.
+  [[gnu::always_inline]] VPM_HD const Real& squared_distance() const { return squared_; }
   // Returns the direction to the foot that was found. A foot that is not below x on its own tangent
   // plane lies on a crease, where the gradient fans out.
   [[gnu::always_inline]] VPM_HD Place normal() const {
@@ -190,10 +192,10 @@ class FootSearch {
   Mask searches_{}, has_met_noise_{}, has_met_groove_{};
 };
 
-// Returns the gradient of the distance to the surface at a place x behind it, which points towards
-// the nearest surface point. `on_surface` is the sample at x and must be known.
+// Searches for the nearest place of the surface from a place x behind it. `on_surface` is the
+// sample at x and must be known.
 template <class Place>
-[[gnu::always_inline]] VPM_HD inline Place search_normal(
+[[gnu::always_inline]] VPM_HD inline FootSearch<RealOf<Place>> search_foot(
     const DepthSampler& image, const Place& x, const SurfaceSampleOf<RealOf<Place>>& on_surface) {
   using Real = RealOf<Place>;
   using Int = IntOf<Real>;
@@ -209,7 +211,15 @@ template <class Place>
     const SurfaceSampleOf<Real> next = image.sample_and(search.target(), also);
     search.take(image, next, beside);
   }
-  return search.normal();
+  return search;
+}
+
+// Returns the gradient of the distance to the surface at a place x behind it, which points towards
+// the nearest surface point. `on_surface` is the sample at x and must be known.
+template <class Place>
+[[gnu::always_inline]] VPM_HD inline Place search_normal(
+    const DepthSampler& image, const Place& x, const SurfaceSampleOf<RealOf<Place>>& on_surface) {
+  return search_foot(image, x, on_surface).normal();
 }
 
 }  // namespace vpm

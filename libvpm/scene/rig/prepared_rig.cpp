@@ -1,0 +1,106 @@
+#include "libvpm/scene/rig/prepared_rig.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+
+namespace vpm {
+namespace {
+
+// Returns what orders cameras, and is equal for none that differ but in their images.
+auto key_of(const Camera& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  const auto numbers = [](Vec3 v) { return std::tuple(v.x, v.y, v.z); };
+  const Pose& pose = camera.to_world;
+  return std::tuple(numbers(pose.translation), numbers(pose.rotation.row0),
+                    numbers(pose.rotation.row1), numbers(pose.rotation.row2), k.fx, k.fy, k.cx,
+                    k.cy, camera.width, camera.height);
+}
+
+// Orders images of equal cameras by their pixels.
+int compare_pixels(const PreparedImage& a, const PreparedImage& b) {
+  const DepthSurface one = a.surface(), other = b.surface();
+  const std::int32_t pixels = one.width * one.height;
+  for (std::int32_t i = 0; i < pixels; ++i) {
+    const auto key = [i](const DepthSurface& image) {
+      const Vec3f n = image.normals[i];
+      return std::tuple(image.measured[i], image.tiles[0][i].high, n.x, n.y, n.z);
+    };
+    if (key(one) < key(other)) return -1;
+    if (key(other) < key(one)) return 1;
+  }
+  return 0;
+}
+
+int compare(const DepthBody& a, const DepthBody& b) {
+  const auto one = key_of(a.prepared().camera()), other = key_of(b.prepared().camera());
+  return one < other ? -1 : other < one ? 1 : compare_pixels(a.prepared(), b.prepared());
+}
+
+}  // namespace
+
+PreparedRig::PreparedRig(std::vector<DepthBody> images) : images_(std::move(images)) {
+  if (images_.empty()) throw Error(ErrorKind::invalid_argument, "a rig needs a camera");
+  order_images();
+  constexpr auto kMost = static_cast<std::size_t>(RigSurface::kMostCameras);
+  if (images_.size() > kMost)
+    throw Error(ErrorKind::invalid_argument, "there are " + std::to_string(images_.size()) +
+                                                 " depth images, but " + std::to_string(kMost) +
+                                                 " cameras at most are one body");
+  silhouettes_.resize(images_.size());
+  parallel_for(images_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      silhouettes_[i] = ImageSilhouettes(images_[i].surface());
+  });
+  place_cameras();
+  agreement_ = agreement_of(cameras_);
+}
+
+void PreparedRig::order_images() {
+  std::sort(images_.begin(), images_.end(),
+            [](const DepthBody& a, const DepthBody& b) { return compare(a, b) < 0; });
+  images_.erase(
+      std::unique(images_.begin(), images_.end(),
+                  [](const DepthBody& a, const DepthBody& b) { return compare(a, b) == 0; }),
+      images_.end());
+}
+
+void PreparedRig::place_cameras() {
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    const Pose to_rig = relative_to(to_world(), images_[i].to_world());
+    cameras_.push_back({images_[i].surface(), silhouettes_[i].view(), inverse(to_rig), to_rig});
+  }
+}
+
+std::size_t PreparedRig::point_count() const {
+  return std::accumulate(
+      images_.begin(), images_.end(), std::size_t{0},
+      [](std::size_t sum, const DepthBody& body) { return sum + body.points(); });
+}
+
+std::size_t PreparedRig::most_ranges() const {
+  return std::accumulate(
+      images_.begin(), images_.end(), std::size_t{0},
+      [](std::size_t sum, const DepthBody& body) { return sum + body.prepared().most_ranges(); });
+}
+
+const PreparedRig::Points& PreparedRig::points() const {
+  std::call_once(points_->once, [&] {
+    for (const DepthBody& body : images_) {
+      const PreparedImage& image = body.prepared();
+      const Vec3 offset = image.origin() - origin();
+      for (const Vec3f& place : image.positions())
+        points_->positions.push_back(narrow(widen(place) + offset));
+      points_->normals.insert(points_->normals.end(), image.normals().begin(),
+                              image.normals().end());
+    }
+  });
+  return *points_;
+}
+
+}  // namespace vpm
