@@ -70,6 +70,22 @@ Body::Body(const SolidBody& solid, const Pose& to_world)
                 "make it with `with_force`");
 }
 
+Body Body::of_cameras(std::span<const Body> images) {
+  std::vector<DepthBody> list;
+  for (const Body& body : images) {
+    const DepthBody* const image =
+        body.is_solid() ? nullptr : HandleAccess::held(body).as<DepthBody>();
+    if (image == nullptr)
+      throw Error(ErrorKind::invalid_argument,
+                  "a body of several cameras is made of depth images, and of nothing else");
+    list.push_back(*image);
+  }
+  const RigBody rig(std::move(list));
+  const std::vector<DepthBody>& different = rig.prepared().images();
+  return HandleAccess::make<Body>(different.size() == 1 ? AnyBody(different.front())
+                                                        : AnyBody(rig));
+}
+
 std::size_t Body::points() const {
   return is_solid() ? 0 : HandleAccess::held(*this).points();
 }

@@ -27,6 +27,10 @@ COMMANDS = [
      "vpm-query --tool small.vpmg --frames no_camera --trajectory still.txt --remove out.jsonl", "make clouds of the depth images",
      f"vpm-normals plain {CAMERA} -o made --quiet; echo '{{\"remove\":[\"small.off@{POSE}\"]}}' > out.jsonl; "
      "vpm-query --tool small.vpmg --frames made --trajectory still.txt --remove out.jsonl"),
+    # Several cameras
+    ("vpm-normals points.ply -o out.vpmc --quiet; vpm-query --tool small.vpmg --cloud wall.vpmc --cloud out.vpmc --poses poses.txt",
+     "give it as the only (--cloud), or make it of the depth image by vpm-normals",
+     "vpm-normals points.ply -o out.vpmc --quiet; vpm-query --tool small.vpmg {0} out.vpmc --poses poses.txt"),
     # Outputs
     ("vpm-pack small.off", r"give (-o OUT.vpmp), (--export), (--report) or (--view)",
      "vpm-pack small.off --spheres 5 -o out.vpmp"),

@@ -63,7 +63,11 @@ void declare_inputs(CLI::App& app, Arguments& a) {
                  "then have the field tool, from 0")
       ->allow_extra_args(false)
       ->option_text("MODEL");
-  app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)")->option_text("CLOUD");
+  app.add_option("--cloud", a.clouds,
+                 "Point cloud (.vpmc). Given several times: depth images of cameras that may see "
+                 "the same things, which are one body")
+      ->allow_extra_args(false)
+      ->option_text("CLOUD");
   app.add_option(
          "--solid", a.solids,
          "Tool model (.vpmg) or mesh of a solid in the scene, with its pose after an @ where "
@@ -238,8 +242,10 @@ void declare_outputs(CLI::App& app, Arguments& a) {
   begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output, "Results: JSON Lines, or CSV if the name ends in .csv")
       ->capture_default_str();
-  app.add_flag("--bodies", a.bodies,
-               "Each line also lists what each body of the scene gives: cloud first, then solids");
+  app.add_flag(
+      "--bodies", a.bodies,
+      "Each line also lists what each body of the scene gives: cloud, or what several cameras see, "
+      "first, then solids");
   app.add_flag("--resume", a.resume,
                "Go on after the lines that an interrupted run with the same options left beside "
                "--output");
@@ -285,12 +291,12 @@ void check_names(const Arguments& a, const CommonOptions& common) {
   for (const std::string& text : a.solids) solids.push_back(solid_from_text(text, "--solid").name);
   if (std::ranges::count(solids, "-") > 0)
     throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
-  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.pairs == "-") +
+  if (std::ranges::count(a.tools, "-") + std::ranges::count(a.clouds, "-") + (a.pairs == "-") +
           std::ranges::count(a.poses, "-") >
       1)
     throw Error(ErrorKind::invalid_argument,
                 "only one of --tool, --cloud, --pairs and --poses can be standard input");
-  if (a.serve && (std::ranges::count(a.tools, "-") > 0 || a.cloud == "-"))
+  if (a.serve && std::ranges::count(a.tools, "-") + std::ranges::count(a.clouds, "-") > 0)
     throw Error(
         ErrorKind::invalid_argument,
         "--serve reads its requests from standard input: name files for --tool and --cloud");
@@ -299,7 +305,8 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                 "--serve answers in JSON: let the name of --output end in .jsonl");
   KeptLines::check(a.output, leftover_of(a, common));
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  std::vector<std::string> inputs{a.cloud, a.pairs, a.replay.frames, a.replay.camera_poses};
+  std::vector<std::string> inputs{a.pairs, a.replay.frames, a.replay.camera_poses};
+  inputs.insert(inputs.end(), a.clouds.begin(), a.clouds.end());
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   inputs.insert(inputs.end(), solids.begin(), solids.end());
   inputs.insert(inputs.end(), a.poses.begin(), a.poses.end());

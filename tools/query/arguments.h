@@ -34,7 +34,8 @@ struct Arguments {
   std::string pairs, unit, repair;   // of an assembly
   std::size_t contacts = 0;          // of each pair; 0: none are told
   std::optional<double> fail_above;  // m^3; of an assembly in the cube of its unit
-  std::string cloud, pose;
+  std::vector<std::string> clouds;   // one, or depth images of several cameras
+  std::string pose;
   std::vector<std::string> poses;  // one file, or one for each tool
   std::string measure = "refined", shadows = "near";
   std::uint32_t level = 0;

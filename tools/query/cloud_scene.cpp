@@ -10,37 +10,79 @@
 
 namespace vpm::tools {
 
-CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
-  const std::string& name = setup.arguments.cloud;
-  name.empty() ? void(scene_.emplace(setup.solids)) : add(setup, name, PointCloud::read(name));
+namespace {
+
+std::vector<NamedCloud> read_clouds(const std::vector<std::string>& names) {
+  std::vector<NamedCloud> clouds;
+  for (const std::string& name : names) clouds.push_back({name, PointCloud::read(name)});
+  return clouds;
 }
 
-CloudScene::CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud)
-    : setup_(setup) {
-  add(setup, name, cloud);
+void check_cameras(const std::vector<NamedCloud>& clouds) {
+  if (clouds.size() < 2) return;
+  for (const auto& [name, cloud] : clouds) {
+    if (!cloud.camera())
+      throw Error(ErrorKind::refused,
+                  "several clouds are one body by their cameras, but this one keeps none", name,
+                  "give it as the only --cloud, or make it of the depth image by vpm-normals");
+  }
 }
 
-void CloudScene::add(QuerySetup& setup, const std::string& name, const PointCloud& cloud) {
-  const auto start = std::chrono::steady_clock::now();
+// Runs `make`. Names the cloud in errors that do not say where they are.
+template <class Make>
+auto naming_cloud(const std::string& name, const Make& make) {
   try {
-    std::vector<Body> bodies{Body(cloud, setup.points)};
-    bodies.insert(bodies.end(), setup.solids.begin(), setup.solids.end());
-    scene_.emplace(std::move(bodies));
+    return make();
   } catch (const Error& fault) {
     if (!fault.where().empty()) throw;
     throw Error(fault.kind(), fault.problem(), name, fault.hint());
   }
+}
+
+// Returns the body that the clouds are.
+Body body_of(const std::vector<NamedCloud>& clouds, Denoising points) {
+  std::vector<Body> bodies;
+  for (const auto& [name, cloud] : clouds)
+    bodies.push_back(naming_cloud(name, [&] { return Body(cloud, points); }));
+  return bodies.size() == 1 ? bodies.front()
+                            : naming("--cloud", [&] { return Body::of_cameras(bodies); });
+}
+
+}  // namespace
+
+CloudScene::CloudScene(QuerySetup& setup)
+    : CloudScene(setup, read_clouds(setup.arguments.clouds)) {}
+
+CloudScene::CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds) : setup_(setup) {
+  check_cameras(clouds);
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<Body> bodies;
+  if (!clouds.empty()) bodies.push_back(body_of(clouds, setup.points));
+  bodies.insert(bodies.end(), setup.solids.begin(), setup.solids.end());
+  scene_.emplace(std::move(bodies));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   prepare_seconds_ = taken.count();
-  check_.emplace(setup.tools, cloud, setup.options.measure);
-  const Remarks remarks = check_->remarks();
-  say(setup.program, remarks);
-  has_said_ = !remarks.empty();
-  if (setup.view) setup.view->add_cloud(name, cloud);
+  for (const auto& [name, cloud] : clouds) {
+    checks_.emplace_back(setup.tools, cloud, setup.options.measure);
+    if (setup.view) setup.view->add_cloud(name, cloud);
+  }
+  const Remarks doubts = remarks();
+  say(setup.program, doubts);
+  has_said_ = !doubts.empty();
+}
+
+Remarks CloudScene::remarks() const {
+  Remarks first;
+  for (const SetupCheck& check : checks_) {
+    const Remarks found = check.remarks();
+    if (found.empty()) return {};
+    if (first.empty()) first = found;
+  }
+  return first;
 }
 
 void CloudScene::warn_at_end() const {
-  if (check_ && !has_said_) say(setup_.program, check_->remarks());
+  if (!has_said_) say(setup_.program, remarks());
 }
 
 std::vector<Job> jobs_of(const std::vector<AskedPose>& asked) {

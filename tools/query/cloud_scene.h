@@ -15,14 +15,22 @@
 
 namespace vpm::tools {
 
-// Cloud of --cloud, prepared for queries, and the solids of --solid.
+// Cloud that was read from a file.
+struct NamedCloud {
+  std::string name;
+  PointCloud cloud;
+};
+
+// Cloud of --cloud, prepared for queries, or the body that several of cameras are together, and the
+// solids of --solid.
 class CloudScene {
  public:
-  // Reads and prepares the cloud, if there is one, and adds it to the view, if there is one. Says
-  // what the sizes of cloud and tools let doubt.
+  // Reads and prepares the clouds, if there are any, and adds them to the view, if there is one.
+  // Says what the sizes of clouds and tools let doubt. Throws Error(refused) for several clouds one
+  // of which keeps no camera.
   explicit CloudScene(QuerySetup& setup);
-  // The same for a cloud that was read from the file `name`.
-  CloudScene(QuerySetup& setup, const std::string& name, const PointCloud& cloud);
+  // The same for clouds that were read.
+  CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds);
 
   const Scene& scene() const { return *scene_; }
   // Returns the number of the cloud's points; 0 without a cloud.
@@ -31,17 +39,20 @@ class CloudScene {
   double prepare_seconds() const { return prepare_seconds_; }
   // Shows the answer at a pose of the k-th tool to the checks, which are about clouds.
   void see(const Pose& pose, std::size_t k, const Result& result) {
-    if (check_ && setup_.solids.empty()) check_->see(pose, result, k);
+    if (!setup_.solids.empty()) return;
+    for (SetupCheck& check : checks_) check.see(pose, result, k);
   }
   // Says what the poses let doubt, where nothing was said of sizes.
   void warn_at_end() const;
 
  private:
-  void add(QuerySetup& setup, const std::string& name, const PointCloud& cloud);
+  // Returns what the checks of all clouds doubt: nothing where one camera shows what another does
+  // not.
+  Remarks remarks() const;
 
   const QuerySetup& setup_;
   std::optional<Scene> scene_;
-  std::optional<SetupCheck> check_;
+  std::vector<SetupCheck> checks_;  // one for each cloud
   bool has_said_ = false;
   double prepare_seconds_ = 0;
 };

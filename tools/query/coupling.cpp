@@ -176,7 +176,7 @@ void run_coupling(QuerySetup& setup) {
   scene.warn_at_end();
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);
-  if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
+  if (!a.clouds.empty()) stats["cloud_points"] = scene.points();
   add_levels(stats, query);
   write_last_spheres(setup, query, run.last);
   write_stats_and_view(setup, std::move(stats));

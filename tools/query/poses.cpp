@@ -160,7 +160,7 @@ void run_poses(QuerySetup& setup) {
   scene.warn_at_end();
   if (!has_states && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
-  if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
+  if (!a.clouds.empty()) stats["cloud_points"] = scene.points();
   add_levels(stats, queries.query());
   write_last_spheres(setup, queries.query(), queries.last());
   write_stats_and_view(setup, std::move(stats));

@@ -106,7 +106,8 @@ nlohmann::json run_of(const Program& program, const Arguments& a) {
   };
   for (const std::string& tool : a.tools) add("tool", tool);
   for (const std::string& solid : a.solids) add("solids", solid_from_text(solid, "--solid").name);
-  add("cloud", a.cloud);
+  for (const std::string& cloud : a.clouds) add("cloud", cloud);
+  if (a.clouds.empty()) add("cloud", {});
   for (const std::string& poses : a.poses) add("poses", poses);
   add("camera-poses", a.replay.camera_poses);
   add("remove", a.replay.remove);

@@ -87,9 +87,11 @@ class Server {
  public:
   explicit Server(QuerySetup& setup)
       : setup_(setup), output_(setup.program, setup.arguments, result_columns()) {
-    const std::string& cloud = setup.arguments.cloud;
-    if (!cloud.empty()) see(cloud, read_scene(cloud, {}));
-    if (cloud.empty() && !setup.solids.empty()) scene_ = std::make_unique<CloudScene>(setup);
+    std::vector<NamedCloud> clouds;
+    for (const std::string& name : setup.arguments.clouds)
+      clouds.push_back({name, read_scene(name, {})});
+    if (!clouds.empty() || !setup.solids.empty())
+      scene_ = std::make_unique<CloudScene>(setup, clouds);
   }
 
   // Answers until the input ends. Throws only what concerns the streams.
@@ -168,7 +170,7 @@ class Server {
   }
 
   void see(const std::string& name, const PointCloud& cloud) {
-    auto next = std::make_unique<CloudScene>(setup_, name, cloud);
+    auto next = std::make_unique<CloudScene>(setup_, std::vector{NamedCloud{name, cloud}});
     if (scene_) scene_->warn_at_end();
     scene_ = std::move(next);
     if (setup_.level.asks() && !setup_.level.max_error) query_.reset();  // chosen by the scene

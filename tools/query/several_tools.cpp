@@ -90,7 +90,7 @@ void run_several_tools(QuerySetup& setup) {
   note_deviation(setup.program, "", source.largest_deviation());
   scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
-  if (!a.cloud.empty()) stats["cloud_points"] = scene.points();
+  if (!a.clouds.empty()) stats["cloud_points"] = scene.points();
   add_levels(stats, tools.query(), setup.tools.size());
   write_stats_and_view(setup, std::move(stats));
 }

@@ -1,0 +1,25 @@
+# Several cameras are one body. One sees the front of a slab of .3 m, the other its back.
+
+$ cp $SOURCE/tests/tools/inputs/* .
+$ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
+$ vpm-normals wall.png -o front.vpmc --intrinsics 60,60,31.5,23.5 --quiet && vpm-normals wall.png -o back.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,2.3,0,1,0,0 --quiet
+$ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 1.12 0 0 0 1' '0 0 1.3 0 0 0 1' '0 0 1.5 0 0 0 1' '0 3 1.5 0 0 0 1' > poses.txt
+
+# What both hide is inside as a whole; what one sees free is free, and unseen is what none sees.
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --bodies > both.jsonl && $VALIDATE query-result both.jsonl && python3 -c "import json; lines = [json.loads(l) for l in open('both.jsonl')]; print([(round(r['volume_fraction'], 2), round(r['seen_free'], 2), round(r['unseen'], 2), round(r['out_of_view'], 2)) for r in lines]); print([len(r['bodies']) for r in lines], [round(r['force'][2] / (r['volume'] or 1)) + 0 for r in lines])"
+[(0.25, 0.75, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), (0.5, 0.5, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)]
+[1, 1, 1, 1, 1] [-1, 0, 1, 0, 0]
+
+# Their order, and one that is given twice, change no byte; one alone is itself.
+$ for a in "back front" "front back front"; do vpm-query --tool cube.vpmg $(printf -- '--cloud %s.vpmc ' $a) --poses poses.txt --bodies | cmp - both.jsonl; done
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud front.vpmc --poses poses.txt > twice.jsonl && vpm-query --tool cube.vpmg --cloud front.vpmc --poses poses.txt | cmp - twice.jsonl
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --bodies --batch 4 --threads 2 | cmp - both.jsonl
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --bodies --dump-config > call.json && $VALIDATE config.vpm-query call.json && vpm-query --config call.json | cmp - both.jsonl
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --view both.html -o again.jsonl --quiet && grep -c '<html' both.html
+1
+
+# Points without a camera join no others.
+$ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud points.vpmc --poses poses.txt
+2> vpm-query: error: points.vpmc: several clouds are one body by their cameras, but this one keeps none; give it as the only --cloud, or make it of the depth image by vpm-normals
+[1]
