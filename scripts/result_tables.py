@@ -302,6 +302,24 @@ def reached(accuracy, timing, replay, packing, cuda):
     return table(["with 1000 spheres and a camera at 1 m, unless told otherwise", "median or mean"], rows)
 
 
+def cameras(report):
+    of = {(r["condition"], r["cameras"]): r for r in report["results"]}
+    names = {"clean": "clean", "noise": "Kinect noise", "holes": "holes of 3 to 12 pixels",
+             "small": "poses wrong by 1 mm and .1°", "large": "poses wrong by 5 mm and .5°"}
+    counts = sorted({count for _, count in of})
+    rows = [[text] + [f"{percent(of[name, count]['volume_mean'])} / {percent(of[name, count]['volume_worst'], 2)}" for count in counts]
+            + [f"{of[name, counts[-1]]['direction_mean_degrees']:.1f}"] for name, text in names.items()]
+    times = [of["clean", count]["query_us"] for count in counts]
+    rows.append(["time of a query, times that with one"] + [f"{time / times[0]:.1f}" for time in times] + [""])
+    most = table(["mean / worst, % of the tool; cameras"] + [str(count) for count in counts] + [f"direction with {counts[-1]}, mean °"], rows)
+    scenes = of["clean", counts[-1]]["scenes"]
+    by_scene = table([f"{counts[-1]} cameras, mean / worst"] + list(scenes),
+                     [[text] + [f"{percent(of[name, counts[-1]]['scenes'][scene]['volume_mean'])} / "
+                                f"{percent(of[name, counts[-1]]['scenes'][scene]['volume_worst'], 2)}" for scene in scenes]
+                      for name, text in names.items()])
+    return f"{most}\n\n{by_scene}"
+
+
 def fuzz(report):
     rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
             for name, t in report["targets"].items()]
@@ -321,7 +339,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "fuzz": (fuzz, "fuzz")}}
+             "scaling": (scaling, "scaling"), "cameras": (cameras, "cameras"), "fuzz": (fuzz, "fuzz")}}
 
 
 def commits(suites, reports):

@@ -421,7 +421,7 @@ COMMANDS = [
      f"{STEPS} --frames plain --trajectory still.txt --repeat-frames"),
     (f"{STEPS} --frames plain --trajectory ms.txt", "are its times seconds", f"{STEPS} --frames plain --trajectory timed.txt"),
     # Benchmarks, whose suites take minutes: bench.t and the tests of vpm-bench run them.
-    ("vpm-bench speed", "the suites are accuracy, extremes", None),
+    ("vpm-bench speed", "the suites are accuracy, cameras", None),
     ("vpm-bench", "name a suite; the suites are", None),
     ("vpm-bench timing --noise-seed 3", "takes no --noise-seed, which is for accuracy; leave it out", None),
     ("vpm-bench extremes --quick --quiet --out outs/today", "correct its name, or make the folder above it", None),

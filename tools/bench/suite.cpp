@@ -23,6 +23,7 @@ struct Suite {
 
 constexpr Suite kSuites[] = {
     {"accuracy", run_accuracy, kAll | kData | kSeed | kOccluded, Place::either},
+    {"cameras", run_cameras},
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
     {"pairs", run_pairs, kMeshes},

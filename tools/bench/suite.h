@@ -43,6 +43,10 @@ Report run_suite(const std::string& name, const SuiteOptions& options);
 // Measures errors of volume, force and torque against the truth, for both measures.
 Report run_accuracy(const SuiteOptions& options);
 
+// Measures errors of one to four cameras around a scene against the truth, with noise, holes and
+// wrong poses, and times their queries.
+Report run_cameras(const SuiteOptions& options);
+
 // Checks inputs at the edge of what is possible. Sets `failure` unless each is answered right or
 // refused with a message.
 Report run_extremes(const SuiteOptions& options);
