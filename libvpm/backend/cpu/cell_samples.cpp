@@ -65,6 +65,19 @@ template <class Surface>
   return found;
 }
 
+// Writes search(x, sample) of the sampled places.
+template <class Search>
+[[gnu::always_inline]] inline void search_lanes(std::span<const PlaceSample> places, Vec3* normals,
+                                                const Search& search) {
+  const std::size_t count = places.size();
+  for (std::size_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(places, first);
+    const Vec3x4 normal = search(Vec3x4(a.x, b.x, c.x, d.x),
+                                 joined(a.on_surface, b.on_surface, c.on_surface, d.on_surface));
+    for (int k = 0; k < kFour && first + k < count; ++k) normals[first + k] = normal.of(k);
+  }
+}
+
 // Adds the parts that were not seen at their centroids.
 template <class Surface>
 [[gnu::always_inline]] inline void add_unseen_lanes(const Surface& surface, const Pose& to_surface,
@@ -138,19 +151,20 @@ void add_unseen(const RigSurface& surface, const Pose& to_surface, const FreePar
 VPM_VECTOR_CLONES
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals) {
-  const std::size_t count = places.size();
-  for (std::size_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(places, first);
-    const Vec3x4 normal =
-        search_normal(surface, Vec3x4(a.x, b.x, c.x, d.x),
-                      joined(a.on_surface, b.on_surface, c.on_surface, d.on_surface));
-    for (int k = 0; k < kFour && first + k < count; ++k) normals[first + k] = normal.of(k);
-  }
+  search_lanes(
+      places,
+      normals, [&](const Vec3x4& x, const FourSamples& on_surface) __attribute__((always_inline)) {
+        return search_normal(surface, x, on_surface);
+      });
 }
-
+VPM_VECTOR_CLONES
 void closest_normals(const RigSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals) {
-  for (const auto& [x, on_surface] : places) *normals++ = surface.closest_normal(x, on_surface);
+  search_lanes(
+      places,
+      normals, [&](const Vec3x4& x, const FourSamples& on_surface) __attribute__((always_inline)) {
+        return surface.closest_normal(x, on_surface);
+      });
 }
 
 VPM_VECTOR_CLONES

@@ -78,8 +78,8 @@ class VPM_API Body {
   // averaged within what the images disagree by, which they tell themselves. Behind what two
   // cameras see from different sides all is inside, however deep. The order of images changes no
   // bit, and one that is given twice counts once; one image alone is itself. Where a scene lists
-  // such images as bodies of their own, what several see counts several times. Takes some
-  // milliseconds for four images of 300 000 pixels; frames of a DepthStream on a device are
+  // such images as bodies of their own, what several see counts several times. Takes a core
+  // 30 ms for four images of 300 000 pixels; frames of a DepthStream on a device are
   // prepared on the CPU again. Throws Error(invalid_argument) for none, for more than 16, and for a
   // body that is no depth image; otherwise as the constructor.
   static Body of_cameras(std::span<const Body> images);

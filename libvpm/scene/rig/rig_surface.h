@@ -29,10 +29,10 @@ struct RigCamera {
 // Holds what one image tells of a place, or of four.
 template <class Real>
 struct RigReading {
-  MaskOf<Real> known{};
-  Real distance{};         // m, signed as in SurfaceSampleOf; 0 where not known
-  Real below{};            // m, by which the place is deeper than what is on its ray; 0 if aside
-  Real weight{};           // 0 where not known
+  MaskOf<Real> known;      // not set by default, as all of this: many are reserved, and few used
+  Real distance;           // m, signed as in SurfaceSampleOf; 0 where not known
+  Real below;              // m, by which the place is deeper than what is on its ray; 0 if aside
+  Real weight;             // 0 where not known
   PlaceOf<Real> normal{};  // unit, into free space, the rig's frame
 };
 
@@ -247,25 +247,29 @@ struct RigSurface {
   // Returns the unit direction from a place x behind the surface to the nearest place that a camera
   // has seen free: that of the camera with the shortest way, averaged with those of cameras that
   // show the same surface there.
-  VPM_HD Vec3 closest_normal(Vec3 x, const SurfaceSample& on_surface) const {
-    WayToFree ways[kMostCameras];
-    std::int32_t found = 0, shortest = 0;
-    for (std::int32_t i = 0; i < count; ++i) {
-      if (!finds_way(i, x, ways[found])) continue;
-      if (ways[found].length < ways[shortest].length) shortest = found;
-      ++found;
-    }
-    if (found == 0) return on_surface.normal;
-    Vec3 direction;
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD Place
+  closest_normal(const Place& x, const SurfaceSampleOf<RealOf<Place>>& on_surface) const {
+    using Real = RealOf<Place>;
+    RigReading<Real> ways[kMostCameras];
+    std::int32_t names[kMostCameras];
+    const std::int32_t found = find_ways(x, ways, names);
+    const Real zero{};
+    Real length = zero + HUGE_VAL;
+    Place shortest = on_surface.normal;
     for (std::int32_t k = 0; k < found; ++k) {
-      const WayToFree &way = ways[k], &best = ways[shortest];
-      const double alike = k == shortest ? 1.0
-                                         : likeness(way.length - best.length,
-                                                    agreement[way.camera * count + best.camera],
-                                                    dot(way.normal, best.normal));
-      direction += alike * way.normal;
+      const MaskOf<Real> is_shorter = ways[k].known & (ways[k].distance < length);
+      length = is_shorter ? ways[k].distance : length;
+      shortest = choose(is_shorter, ways[k].normal, shortest);
     }
-    return normalized_or_zero(direction);
+    Place direction{zero, zero, zero};
+    for (std::int32_t k = 0; k < found; ++k) {
+      const Real alike =
+          likeness(ways[k].distance - length, most_agreement, dot(ways[k].normal, shortest));
+      direction = direction + (ways[k].known ? alike : zero) * ways[k].normal;
+    }
+    const MaskOf<Real> has_way = length < HUGE_VAL;
+    return choose(has_way, normalized_or_zero(direction), shortest);
   }
 
   // True if a place is behind what two cameras see from sides that differ by more than 60 degrees:
@@ -293,30 +297,49 @@ struct RigSurface {
   // A silhouette's direction is not taken where it has less than this part of the offset.
   static constexpr double kCornerCosine = 0.7;
 
-  // Holds a way out of the surface that one camera sees.
-  struct WayToFree {
-    double length = 0;  // m
-    Vec3 normal;        // unit, the rig's frame
-    std::int32_t camera = 0;
-  };
-  // Finds the nearest place that a camera has seen free. Returns false if it knows nothing of x.
-  VPM_HD bool finds_way(std::int32_t i, Vec3 x, WayToFree& way) const {
-    const RigCamera& camera = cameras[i];
-    const Vec3 at = camera.from_rig * x;
-    const SurfaceSample seen = camera.image.sample(at);
-    if (!seen.known) return false;
-    const Rotation& back = camera.to_rig.rotation;
-    if (seen.distance >= 0) {  // free, but for what the images disagree by
-      way = {0, back * seen.normal, i};
-      return true;
+  // Finds for each camera that knows of a place x behind the surface the nearest place that it has
+  // seen free: as readings whose distance is the length of the way. Returns their number; those
+  // that are surely longer than another are left out.
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD std::int32_t find_ways(const Place& x,
+                                                       RigReading<RealOf<Place>>* ways,
+                                                       std::int32_t* names) const {
+    using Real = RealOf<Place>;
+    constexpr double kSurelyLonger = 2;  // times the way to the tangent plane of another camera
+    std::int32_t found = 0;
+    Real least = Real{} + HUGE_VAL;
+    for (std::int32_t i = 0; i < count; ++i) {
+      RigReading<Real>& way = ways[found];
+      way = read(cameras[i], x);
+      if (!any(way.known)) continue;
+      way.distance = way.distance < 0 ? -way.distance : Real{};  // free, but for disagreement
+      least = way.known & (way.distance < least) ? way.distance : least;
+      names[found++] = i;
     }
-    const FootSearch<double> search = search_foot(camera.image, at, seen);
-    way = {square_root(search.squared_distance()), back * search.normal(), i};
-    RigReading<double> aside{true, seen.distance, 0, 1, seen.normal};
-    read_silhouette(camera, at, norm(at), static_cast<std::int32_t>(seen.point), aside);
-    if (aside.distance > seen.distance && -aside.distance < way.length)
-      way = {-aside.distance, back * aside.normal, i};
-    return true;
+    const Real most = kSurelyLonger * least + most_agreement;
+    for (std::int32_t k = 0; k < found; ++k) {
+      ways[k].known &= ways[k].distance <= most;
+      if (any(ways[k].known & (ways[k].distance > 0))) search_way(cameras[names[k]], x, ways[k]);
+    }
+    return found;
+  }
+  // Replaces what a camera's tangent plane tells of the way out by the nearest place of its
+  // surface, unless a silhouette is nearer.
+  template <class Place>
+  [[gnu::always_inline]] static VPM_HD void search_way(const RigCamera& camera, const Place& x,
+                                                       RigReading<RealOf<Place>>& way) {
+    using Real = RealOf<Place>;
+    using Mask = MaskOf<Real>;
+    const Place at = camera.from_rig * x;
+    const SurfaceSampleOf<Real> seen =
+        camera.image.sample_and(at, [](const IntOf<Real>&, const IntOf<Real>&) {});
+    const FootSearch<Real> search = search_foot(camera.image, at, seen);
+    const Real length = square_root(search.squared_distance());
+    const Mask is_searched = way.known & (way.distance > 0);
+    const Mask is_aside = way.below == 0;  // a silhouette
+    const Mask is_taken = is_searched & (negated(is_aside) | (length < way.distance));
+    way.distance = is_taken ? length : way.distance;
+    way.normal = choose(is_taken, turned(camera.to_rig.rotation, search.normal()), way.normal);
   }
 
   // True if a plane about the middle of a ball is that which each camera that decides there sees.
@@ -418,11 +441,11 @@ struct RigSurface {
         at, [&](const IntOf<Real>& u, const IntOf<Real>& v)
                 __attribute__((always_inline)) { nearest = v * camera.image.width + u; });
     RigReading<Real> reading;
+    reading.known = seen.known;
     if (!any(seen.known)) return reading;
     const Real zero{}, length = square_root(squared_norm(at));
     const Real steep = quotient(-dot(widen(gather(camera.image.normals, nearest)), at), length);
     const Real cosine = steep > kLeastCosine ? steep : zero + kLeastCosine;
-    reading.known = seen.known;
     reading.distance = seen.known ? seen.distance : zero;
     reading.below = at.z - seen.foot.z;
     reading.weight = seen.known ? cosine * cosine : zero;
