@@ -299,13 +299,13 @@ struct RigSurface {
 
   // Finds for each camera that knows of a place x behind the surface the nearest place that it has
   // seen free: as readings whose distance is the length of the way. Returns their number; those
-  // that are surely longer than another are left out.
+  // whose tangent planes are much further away than another are left out.
   template <class Place>
   [[gnu::always_inline]] VPM_HD std::int32_t find_ways(const Place& x,
                                                        RigReading<RealOf<Place>>* ways,
                                                        std::int32_t* names) const {
     using Real = RealOf<Place>;
-    constexpr double kSurelyLonger = 2;  // times the way to the tangent plane of another camera
+    constexpr double kMuchLonger = 2;  // times the way to the tangent plane of another camera
     std::int32_t found = 0;
     Real least = Real{} + HUGE_VAL;
     for (std::int32_t i = 0; i < count; ++i) {
@@ -316,7 +316,7 @@ struct RigSurface {
       least = way.known & (way.distance < least) ? way.distance : least;
       names[found++] = i;
     }
-    const Real most = kSurelyLonger * least + most_agreement;
+    const Real most = kMuchLonger * least + most_agreement;
     for (std::int32_t k = 0; k < found; ++k) {
       ways[k].known &= ways[k].distance <= most;
       if (any(ways[k].known & (ways[k].distance > 0))) search_way(cameras[names[k]], x, ways[k]);
