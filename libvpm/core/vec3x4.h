@@ -23,6 +23,19 @@ using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Int4 = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else none
 
+// Returns a bit per lane that is set, the first lane's lowest. Lanes have all bits set, or none.
+[[gnu::always_inline]] inline unsigned mask_of(Int4 lanes) {
+#ifdef __SSE__
+  return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Float4>(lanes)));
+#else
+  const Int4 bits = lanes & Int4{1, 2, 4, 8};
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+}
+[[gnu::always_inline]] inline Float4 absolute(Float4 a) {
+  return reinterpret_cast<Float4>(reinterpret_cast<Int4>(a) & 0x7fffffff);
+}
+
 [[gnu::always_inline]] inline bool any(const Mask4& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }

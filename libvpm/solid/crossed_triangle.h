@@ -21,7 +21,7 @@ struct CrossedTriangle {
   WideSum area;
   WideVec3 mean;
   std::array<WideSum, 6> products;
-  int entries = 0;  // of edge b-c: how often it enters less how often it leaves
+  std::array<int, 3> entries{};  // of the edges: how often each enters less how often it leaves
   // What cuts it, in the pair's lists; kept for forces.
   static constexpr std::uint32_t kEnd = 0xffffffffu;
   std::uint32_t last_segment = kEnd, last_point = kEnd;
@@ -35,13 +35,11 @@ struct CrossedTriangle {
   }
   void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
   void add_edge_crossing(const EdgeCrossing& crossing, Vec3 place) {
+    entries[static_cast<std::size_t>(crossing.edge)] += crossing.sign;
     if (crossing.edge == 1) add_far_point(crossing.sign, place);
   }
   // Adds a crossing of edge b-c.
-  void add_far_point(int sign, Vec3 place) {
-    entries += sign;
-    add(-sign, corner[1], place);
-  }
+  void add_far_point(int sign, Vec3 place) { add(-sign, corner[1], place); }
   void add_corner_inside() { add(1, corner[1], corner[2]); }
   Products products_real() const {
     Products p{};

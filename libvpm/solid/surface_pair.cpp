@@ -1,6 +1,7 @@
 #include "libvpm/solid/surface_pair.h"
 
 #include <cmath>
+#include <cstdlib>
 
 namespace vpm {
 namespace {
@@ -23,8 +24,7 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     const std::size_t triangles = role.tree->triangles().size();
     role.crossed_stamp.assign(triangles, 0);
     role.crossed_place.assign(triangles, 0);
-    role.placed_stamp.assign(triangles, 0);
-    role.placed_place.assign(triangles, 0);
+    role.place_of.assign(triangles, {});
     role.node_stamp.assign(role.tree->nodes().size(), 0);
     role.corner_stamp.assign(role.tree->vertices().size(), 0);
     role.is_inside.assign(role.tree->vertices().size(), 0);
@@ -35,7 +35,9 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
   start(pose, with_force, with_contacts);
   const SurfaceTree &first = *roles_[0].tree, &second = *roles_[1].tree;
   if (children_that_meet(first.nodes()[0], second.bounds(0, 0), FloatPose(pose)) == 0) return sums_;
-  walk_.run(first, second, pose, [&](std::uint32_t s, std::uint32_t t) { meet(s, t); });
+  list_triangles();
+  drop_apart();
+  for (const CandidatePair& pair : candidates_) meet(pair);
   for (std::size_t role = 0; role < 2; ++role) mark_crossed(role);
   if (with_contacts_) join_crossed();
   for (std::size_t role = 0; role < 2; ++role) {
@@ -54,10 +56,11 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
 
 void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   if (++stamp_ == 0) {  // wrapped: forget all stamps
-    for (Role& role : roles_)
-      for (auto* stamps :
-           {&role.crossed_stamp, &role.placed_stamp, &role.node_stamp, &role.corner_stamp})
+    for (Role& role : roles_) {
+      for (auto* stamps : {&role.crossed_stamp, &role.node_stamp, &role.corner_stamp})
         stamps->assign(stamps->size(), 0);
+      role.place_of.assign(role.place_of.size(), {});
+    }
     stamp_ = 1;
   }
   with_force_ = with_force, with_contacts_ = with_contacts;
@@ -69,7 +72,8 @@ void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
   for (Role& role : roles_) {
-    role.placed.clear(), role.crossed.clear(), role.segments.clear(), role.points.clear();
+    role.listed.clear();
+    role.crossed.clear(), role.segments.clear(), role.points.clear();
     role.sums = {};
   }
 }
@@ -82,20 +86,48 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
   return {corners, role.tree->triangles()[triangle], normal, role.tree->longest_edge(triangle)};
 }
 
-// Returns where placed() of a triangle is kept for this pose.
-std::uint32_t SurfacePair::place(Role& role, std::uint32_t triangle) {
-  if (role.placed_stamp[triangle] != stamp_) {
-    role.placed_stamp[triangle] = stamp_;
-    role.placed_place[triangle] = static_cast<std::uint32_t>(role.placed.size());
-    role.placed.push_back(placed(role, triangle));
+// Returns the triangle's place in the role's lists for this pose.
+std::uint32_t SurfacePair::place_of(Role& role, std::uint32_t triangle) {
+  Listed& listed = role.place_of[triangle];
+  if (listed.stamp != stamp_) {
+    listed = {stamp_, static_cast<std::uint32_t>(role.listed.size())};
+    role.listed.push_back(triangle);
   }
-  return role.placed_place[triangle];
+  return listed.place;
 }
 
-void SurfacePair::meet(std::uint32_t first_triangle, std::uint32_t second_triangle) {
-  ++sums_.candidates;
-  const PlacedTriangle &a = roles_[0].placed[place(roles_[0], first_triangle)],
-                       &b = roles_[1].placed[place(roles_[1], second_triangle)];
+// Lists the pairs of triangles whose bounds meet, and places each triangle once: in loops of their
+// own, since these wait for memory.
+void SurfacePair::list_triangles() {
+  const auto pairs = walk_.run(*roles_[0].tree, *roles_[1].tree, roles_[1].to_first);
+  sums_.candidates = pairs.size();
+  candidates_.clear();
+  for (const auto& [a, b] : pairs)
+    candidates_.push_back({place_of(roles_[0], a), place_of(roles_[1], b)});
+  for (Role& role : roles_) {
+    const std::size_t count = role.listed.size();
+    if (role.placed.size() < count) role.placed.resize(count), role.filters.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const PlacedTriangle& at = role.placed[k] = placed(role, role.listed[k]);
+      role.filters[k] = filter_triangle(at.corner, at.normal, at.longest_edge, per_unit_);
+    }
+  }
+}
+
+// Keeps the pairs that floats do not tell to be apart.
+void SurfacePair::drop_apart() {
+  std::size_t kept = 0;
+  for (const CandidatePair pair : candidates_) {
+    candidates_[kept] = pair;
+    kept += are_apart(roles_[0].filters[pair.a], roles_[1].filters[pair.b]) ? 0 : 1;
+  }
+  candidates_.resize(kept);
+}
+
+void SurfacePair::meet(CandidatePair places) {
+  const std::uint32_t first_triangle = roles_[0].listed[places.a],
+                      second_triangle = roles_[1].listed[places.b];
+  const PlacedTriangle &a = roles_[0].placed[places.a], &b = roles_[1].placed[places.b];
   TriangleCrossing crossing;
   const Meeting meeting = cross_triangles(a, b, crossing);
   if (meeting == Meeting::undecided) ++sums_.undecided;
@@ -169,17 +201,17 @@ void SurfacePair::mark_crossed(std::size_t which) {
   Role& role = roles_[which];
   for (const CrossedTriangle& triangle : role.crossed) {
     const Triangle& corners = role.tree->triangles()[triangle.triangle];
-    // An edge that enters once more than it leaves comes from outside and ends inside.
-    if (triangle.entries == 1 || triangle.entries == -1) {
-      const bool ends_inside = triangle.entries == 1;
-      role.corner_stamp[corners[1]] = role.corner_stamp[corners[2]] = stamp_;
-      role.is_inside[corners[1]] = !ends_inside;
-      role.is_inside[corners[2]] = ends_inside;
-    } else if (triangle.entries != 0) {
-      ++sums_.undecided;
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      // One that enters once more than it leaves comes from outside and ends inside.
+      const int entries = triangle.entries[edge];
+      if (entries == 0) continue;
+      if (std::abs(entries) > 1) ++sums_.undecided;
+      const std::uint32_t from = corners[edge], to = corners[(edge + 1) % 3];
+      role.corner_stamp[from] = role.corner_stamp[to] = stamp_;
+      role.is_inside[from] = entries<0, role.is_inside[to] = entries> 0;
     }
     for (std::uint32_t k = role.tree->parent_of(triangle.triangle); role.node_stamp[k] != stamp_;
-         k = role.tree->summaries()[k].parent)
+         k = role.tree->node_above(k))
       role.node_stamp[k] = stamp_;
   }
 }
@@ -220,8 +252,8 @@ void SurfacePair::add_whole(std::size_t which) {
         pending_.push_back(child);
         continue;
       }
-      if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
-      role.sums.whole.add(scaled(summary.moments, per_unit_));
+      if (!is_inside(which, summary.vertex)) continue;
+      role.sums.whole.add(scaled(tree.moments()[child], per_unit_));
       if (with_force_) role.sums.area.add(per_unit_ * per_unit_ * tree.patches()[child].area);
       note_whole(which, child);
     }

@@ -17,6 +17,7 @@
 #include "libvpm/solid/linear_force.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
+#include "libvpm/solid/triangle_filter.h"
 #include "libvpm/solid/wide_sum.h"
 
 namespace vpm {
@@ -123,18 +124,24 @@ class SurfacePair {
     ForceAndTorque force;
     std::array<DeepPlace, 2> deepest;  // as those of contacts
   };
+  // Number of a triangle among those of a pose, if the stamp is the pose's.
+  struct Listed {
+    std::uint32_t stamp = 0, place = 0;
+  };
   // One of the two surfaces. Stamps are those of the last pose where they equal `stamp_`.
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
-    Pose to_first, to_other;             // from its own frame
-    std::vector<PlacedTriangle> placed;  // in the first's frame
+    Pose to_first, to_other;              // from its own frame
+    std::vector<std::uint32_t> listed;    // triangles that may meet the other's,
+    std::vector<PlacedTriangle> placed;   // these in the first's frame,
+    std::vector<FilterTriangle> filters;  // and in the unit
     std::vector<CrossedTriangle> crossed;
     // What cuts them, for forces: each entry names the one before of the same triangle.
     std::vector<std::pair<CutSegment, std::uint32_t>> segments;
     std::vector<std::pair<CutPoint, std::uint32_t>> points;
     std::vector<std::uint32_t> crossed_stamp, crossed_place;  // of triangles
-    std::vector<std::uint32_t> placed_stamp, placed_place;    // of triangles
+    std::vector<Listed> place_of;                             // of triangles
     std::vector<std::uint32_t> node_stamp;                    // nodes above a crossed triangle
     std::vector<std::uint32_t> corner_stamp;                  // vertices whose side is known
     std::vector<std::uint8_t> is_inside;                      // of vertices
@@ -143,8 +150,10 @@ class SurfacePair {
 
   void start(const Pose& pose, bool with_force, bool with_contacts);
   PlacedTriangle placed(const Role& role, std::uint32_t triangle) const;
-  std::uint32_t place(Role& role, std::uint32_t triangle);
-  void meet(std::uint32_t first_triangle, std::uint32_t second_triangle);
+  std::uint32_t place_of(Role& role, std::uint32_t triangle);
+  void list_triangles();
+  void drop_apart();
+  void meet(CandidatePair places);
   CrossedTriangle& crossed(Role& role, std::uint32_t triangle, const PlacedTriangle& placed);
   bool is_inside(std::size_t role, std::uint32_t vertex);
   void mark_crossed(std::size_t role);
@@ -199,6 +208,7 @@ class SurfacePair {
 
   std::array<Role, 2> roles_;
   TreeWalk walk_;
+  std::vector<CandidatePair> candidates_;                    // as places in the roles' lists
   std::vector<std::uint32_t> pending_;                       // nodes
   std::vector<std::pair<std::uint32_t, Foretold>> patches_;  // nodes, and what their parents tell
   DepthCells cells_;

@@ -61,7 +61,7 @@ class SurfaceTree::Build {
     Node node{};
     node.child.fill(kNone);
     tree_.nodes_.push_back(node);
-    tree_.summaries_.push_back({parent, 0, 0, false, {}});
+    tree_.above_.push_back(parent);
     return static_cast<std::uint32_t>(tree_.nodes_.size() - 1);
   }
 
@@ -225,17 +225,19 @@ class SurfaceTree::Build {
 
   // Sums the moments bottom-up: children have larger indices than their parents.
   void sum_up() {
+    tree_.summaries_.resize(tree_.nodes_.size());
+    tree_.moments_.resize(tree_.nodes_.size());
     for (std::size_t k = tree_.nodes_.size(); k-- > 0;) {
-      Summary& summary = tree_.summaries_[k];
-      summary.first = ranges_[k].begin;
-      summary.end = ranges_[k].end;
+      const Range range = ranges_[k];
+      tree_.summaries_[k] = {range.begin, range.end, tree_.triangles_[range.begin][0], false};
+      SurfaceMoments& moments = tree_.moments_[k];
       for (const std::uint32_t child : tree_.nodes_[k].child) {
         if (child == kNone) continue;
         if ((child & kLeaf) != 0) {
           const auto [a, b, c] = tree_.corners(child & ~kLeaf);
-          summary.moments.add(triangle_moments(a, b, c));
+          moments.add(triangle_moments(a, b, c));
         } else {
-          summary.moments.add(tree_.summaries_[child].moments);
+          moments.add(tree_.moments_[child]);
         }
       }
     }
@@ -322,7 +324,7 @@ SurfaceBounds SurfaceTree::bounds(std::uint32_t node, std::uint32_t child) const
 std::size_t SurfaceTree::bytes() const {
   const auto held = [](const auto& list) { return list.size() * sizeof(list[0]); };
   return held(vertices_) + held(triangles_) + held(parent_of_) + held(longest_edge_) +
-         held(nodes_) + held(summaries_) + held(patches_);
+         held(nodes_) + held(above_) + held(summaries_) + held(moments_) + held(patches_);
 }
 
 }  // namespace vpm

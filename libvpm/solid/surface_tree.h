@@ -33,11 +33,10 @@ class SurfaceTree {
   };
   // What is known of all triangles below a node.
   struct Summary {
-    std::uint32_t parent;  // node; 0's is itself
-    std::uint32_t first;   // triangle; all below are those from here on, before `end`
+    std::uint32_t first;  // triangle; all below are those from here on, before `end`
     std::uint32_t end;
+    std::uint32_t vertex;  // of one of them
     bool is_connected;  // all hang together by vertices: where none is crossed, all are on one side
-    SurfaceMoments moments;
   };
   // How well a plane stands for what is below a node, for forces; with the second moments.
   struct Patch {
@@ -56,10 +55,13 @@ class SurfaceTree {
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }  // in the tree's order
   const std::vector<Node>& nodes() const { return nodes_; }
-  const std::vector<Summary>& summaries() const { return summaries_; }  // of the nodes
+  const std::vector<Summary>& summaries() const { return summaries_; }     // of the nodes
+  const std::vector<SurfaceMoments>& moments() const { return moments_; }  // of the nodes
   const std::vector<Patch>& patches() const { return patches_; }  // of the nodes; empty without
   // Returns the node of which the triangle is a child.
   std::uint32_t parent_of(std::uint32_t triangle) const { return parent_of_[triangle]; }
+  // Returns the node of which the node is a child; 0 for node 0.
+  std::uint32_t node_above(std::uint32_t node) const { return above_[node]; }
   // Returns an upper bound, close to it, of the length of the triangle's longest edge.
   double longest_edge(std::uint32_t triangle) const { return longest_edge_[triangle]; }
   std::array<Vec3, 3> corners(std::uint32_t triangle) const {
@@ -78,7 +80,9 @@ class SurfaceTree {
   std::vector<std::uint32_t> parent_of_;
   std::vector<float> longest_edge_;
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> above_;
   std::vector<Summary> summaries_;
+  std::vector<SurfaceMoments> moments_;
   std::vector<Patch> patches_;
 };
 

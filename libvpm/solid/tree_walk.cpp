@@ -1,24 +1,39 @@
 #include "libvpm/solid/tree_walk.h"
 
+#include <bit>
+#include <cmath>
+
+#include "libvpm/core/lanes.h"
+#include "libvpm/core/vec3x4.h"
+
 namespace vpm {
 namespace {
 
-using Float4 = SurfaceTree::Float4;
-using Int4 = std::int32_t __attribute__((vector_size(16)));
+using vpm::absolute, vpm::mask_of;
 
-[[gnu::always_inline]] inline Float4 magnitude(Float4 v) {
-  return reinterpret_cast<Float4>(reinterpret_cast<Int4>(v) & 0x7fffffff);
+[[gnu::always_inline]] inline Floats absolute(const Floats& v) {
+  return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
 }
 
 // Returns a bit per lane that is set.
-[[gnu::always_inline]] inline unsigned mask_of(Int4 lanes) {
-#ifdef __SSE__
-  return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Float4>(lanes)));
-#else
-  const Int4 bits = lanes & Int4{1, 2, 4, 8};
-  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
-#endif
+[[gnu::always_inline]] inline unsigned mask_of(const Ints& lanes) {
+  std::array<Int4, 2> halves;
+  std::memcpy(&halves, &lanes, sizeof halves);
+  return mask_of(halves[0]) | mask_of(halves[1]) << 4;
 }
+
+// Values for eight pairs of children: those of one node's four, twice, and those of two of the
+// other node's, from lane `first` on, four times each.
+[[gnu::always_inline]] inline Floats twice(const Float4& v) {
+  return Floats{v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]};
+}
+[[gnu::always_inline]] inline Floats fourfold(const Float4& v, int first) {
+  const float p = v[first], q = v[first + 1];
+  return Floats{p, p, p, p, q, q, q, q};
+}
+
+// A node is opened alone where it is so many times as large as the other, else both are.
+constexpr float kLarger = 2;
 
 }  // namespace
 
@@ -49,31 +64,146 @@ unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& 
   const Float4 d0 = node.center[0] - center[0], d1 = node.center[1] - center[1],
                d2 = node.center[2] - center[2];
   // Boxes along the axes of the node's frame.
-  Int4 meets = (magnitude(d0) <= node.half[0] + half[0]) &
-               (magnitude(d1) <= node.half[1] + half[1]) &
-               (magnitude(d2) <= node.half[2] + half[2]);
+  Int4 meets = (absolute(d0) <= node.half[0] + half[0]) & (absolute(d1) <= node.half[1] + half[1]) &
+               (absolute(d2) <= node.half[2] + half[2]);
   if (mask_of(meets) == 0) return 0;
   // The other's slab, about its box's centre.
   const float other_offset =
       other.offset - (other.normal[0] * other.center[0] + other.normal[1] * other.center[1] +
                       other.normal[2] * other.center[2]);
-  meets &= magnitude(normal[0] * d0 + normal[1] * d1 + normal[2] * d2 - other_offset) <=
+  meets &= absolute(normal[0] * d0 + normal[1] * d1 + normal[2] * d2 - other_offset) <=
            other.width + std::fabs(normal[0]) * node.half[0] + std::fabs(normal[1]) * node.half[1] +
                std::fabs(normal[2]) * node.half[2];
   // The slabs of the children.
   Float4 reach = node.width;
   for (std::size_t j = 0; j < 3; ++j)
     reach +=
-        magnitude(node.normal[0] * r[j] + node.normal[1] * r[3 + j] + node.normal[2] * r[6 + j]) *
+        absolute(node.normal[0] * r[j] + node.normal[1] * r[3 + j] + node.normal[2] * r[6 + j]) *
         other.half[j];
-  meets &= magnitude(node.normal[0] * center[0] + node.normal[1] * center[1] +
-                     node.normal[2] * center[2] - node.offset) <= reach;
+  meets &= absolute(node.normal[0] * center[0] + node.normal[1] * center[1] +
+                    node.normal[2] * center[2] - node.offset) <= reach;
   // Boxes along the axes of the other's frame.
   for (std::size_t j = 0; j < 3; ++j)
     meets &=
-        magnitude(r[j] * d0 + r[3 + j] * d1 + r[6 + j] * d2) <=
+        absolute(r[j] * d0 + r[3 + j] * d1 + r[6 + j] * d2) <=
         other.half[j] + s[j] * node.half[0] + s[3 + j] * node.half[1] + s[6 + j] * node.half[2];
   return mask_of(meets);
+}
+
+namespace {
+
+// What the tests of a node's children against those of several others share.
+struct Children {
+  std::array<Floats, 3> center, half, normal;
+  std::array<Floats, 3> along;   // halves of the boxes along the axes of the other's frame
+  std::array<Floats, 3> across;  // of the slabs' normals along these
+  Floats offset, width;
+};
+
+[[gnu::always_inline]] inline Children children_of(const SurfaceTree::Node& node,
+                                                   const FloatPose& pose) {
+  const auto& r = pose.rotation;
+  const auto& s = pose.size;
+  const auto &h = node.half, &n = node.normal;
+  Children all;
+  for (std::size_t j = 0; j < 3; ++j) {
+    all.center[j] = twice(node.center[j]), all.half[j] = twice(h[j]), all.normal[j] = twice(n[j]);
+    all.along[j] = twice(s[j] * h[0] + s[3 + j] * h[1] + s[6 + j] * h[2]);
+    all.across[j] = twice(absolute(r[j] * n[0] + r[3 + j] * n[1] + r[6 + j] * n[2]));
+  }
+  all.offset = twice(node.offset), all.width = twice(node.width);
+  return all;
+}
+
+// Tests the children of `a` against two of b, from `first` on. `pose` maps b's frame to a's.
+[[gnu::always_inline]] inline unsigned pairs_that_meet(const Children& a,
+                                                       const SurfaceTree::Node& b, int first,
+                                                       const FloatPose& pose) {
+  const auto& r = pose.rotation;
+  const auto& s = pose.size;
+  std::array<Floats, 3> from, half, center, normal, d;  // b's bounds; but for `d` and two, in b's
+  std::array<Floats, 3> own_normal;
+  for (std::size_t i = 0; i < 3; ++i) {
+    from[i] = fourfold(b.center[i], first), half[i] = fourfold(b.half[i], first);
+    own_normal[i] = fourfold(b.normal[i], first);
+  }
+  Ints meets{};
+  meets = ~meets;
+  // Boxes along the axes of a's frame.
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t k = 3 * i;
+    center[i] = r[k] * from[0] + r[k + 1] * from[1] + r[k + 2] * from[2] + pose.translation[i];
+    normal[i] = r[k] * own_normal[0] + r[k + 1] * own_normal[1] + r[k + 2] * own_normal[2];
+    d[i] = a.center[i] - center[i];
+    meets &=
+        absolute(d[i]) <= a.half[i] + (s[k] * half[0] + s[k + 1] * half[1] + s[k + 2] * half[2]);
+  }
+  // b's slabs, about their boxes' centres.
+  const Floats offset =
+      fourfold(b.offset, first) -
+      (own_normal[0] * from[0] + own_normal[1] * from[1] + own_normal[2] * from[2]);
+  meets &= absolute(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] - offset) <=
+           fourfold(b.width, first) +
+               (absolute(normal[0]) * a.half[0] + absolute(normal[1]) * a.half[1] +
+                absolute(normal[2]) * a.half[2]);
+  // a's slabs.
+  meets &= absolute(a.normal[0] * center[0] + a.normal[1] * center[1] + a.normal[2] * center[2] -
+                    a.offset) <=
+           a.width + (a.across[0] * half[0] + a.across[1] * half[1] + a.across[2] * half[2]);
+  // Boxes along the axes of b's frame.
+  for (std::size_t j = 0; j < 3; ++j)
+    meets &= absolute(r[j] * d[0] + r[3 + j] * d[1] + r[6 + j] * d[2]) <= half[j] + a.along[j];
+  return mask_of(meets);
+}
+
+[[gnu::always_inline]] inline unsigned pairs_that_meet(const SurfaceTree::Node& a,
+                                                       const SurfaceTree::Node& b,
+                                                       const FloatPose& pose) {
+  const Children all = children_of(a, pose);
+  return pairs_that_meet(all, b, 0, pose) | pairs_that_meet(all, b, 2, pose) << 8;
+}
+
+}  // namespace
+
+// Lists pairs of triangles, and pushes what is to be opened: the larger of two children, or both
+// where their sizes are alike. A triangle has size 0.
+void TreeWalk::step(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned meets) {
+  const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
+  std::array<unsigned, 4> of_p{};  // b's children that meet a child of p, which is opened alone
+  for (unsigned k = 0; meets != 0; ++k, meets >>= 4) {
+    unsigned of_q = 0;  // a's children that meet q's child, which is opened alone
+    for (unsigned rest = meets & 15; rest != 0; rest &= rest - 1) {
+      const auto l = static_cast<unsigned>(std::countr_zero(rest));
+      const std::uint32_t child_p = p.child[l], child_q = q.child[k];
+      const float size_p = p.size[static_cast<int>(l)], size_q = q.size[static_cast<int>(k)];
+      if ((child_p & child_q & SurfaceTree::kLeaf) != 0)
+        found_.push_back({child_p & ~SurfaceTree::kLeaf, child_q & ~SurfaceTree::kLeaf});
+      else if (size_p > kLarger * size_q)
+        of_p[l] |= 1u << 4 * k;
+      else if (size_q > kLarger * size_p)
+        of_q |= 1u << l;
+      else
+        stack_.push_back({child_p, child_q, 0xffff});
+    }
+    if (of_q != 0) stack_.push_back({place.a, q.child[k], of_q * 0x1111});
+  }
+  for (std::size_t l = 0; l < 4; ++l)
+    if (of_p[l] != 0) stack_.push_back({p.child[l], place.b, of_p[l] * 15});
+}
+
+VPM_VECTOR_CLONES
+std::span<const CandidatePair> TreeWalk::run(const SurfaceTree& a, const SurfaceTree& b,
+                                             const Pose& pose) {
+  const FloatPose to_a(pose);
+  stack_.assign(1, {0, 0, 0xffff});
+  found_.clear();
+  while (!stack_.empty()) {
+    const Place place = stack_.back();
+    stack_.pop_back();
+    step(a, b, place,
+         place.children & pairs_that_meet(a.nodes()[place.a], b.nodes()[place.b], to_a));
+  }
+  return found_;
 }
 
 }  // namespace vpm

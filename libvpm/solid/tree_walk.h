@@ -1,9 +1,9 @@
 // Finds the pairs of triangles of two trees whose bounds meet.
 #pragma once
 
-#include <cmath>
+#include <array>
 #include <cstdint>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "libvpm/core/pose.h"
@@ -23,43 +23,27 @@ struct FloatPose {
 unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& other,
                             const FloatPose& pose);
 
+// A triangle of one surface and one of the other.
+struct CandidatePair {
+  std::uint32_t a, b;
+};
+
 class TreeWalk {
  public:
-  // Calls take(triangle of a, triangle of b) for pairs that may meet. `pose` maps b's frame to a's.
-  template <class Take>
-  void run(const SurfaceTree& a, const SurfaceTree& b, const Pose& pose, const Take& take) {
-    const FloatPose to_a(pose), to_b(inverse(pose));
-    stack_.clear();
-    stack_.push_back({{0, 0}, {0, 0}});
-    while (!stack_.empty()) {
-      const auto [p, q] = stack_.back();
-      stack_.pop_back();
-      const SurfaceTree::Node &node_p = a.nodes()[p.node], &node_q = b.nodes()[q.node];
-      const std::uint32_t child_p = node_p.child[p.child], child_q = node_q.child[q.child];
-      if ((child_p & child_q & SurfaceTree::kLeaf) != 0) {
-        take(child_p & ~SurfaceTree::kLeaf, child_q & ~SurfaceTree::kLeaf);
-        continue;
-      }
-      // The larger of the two is opened; a triangle has size 0.
-      if (node_p.size[static_cast<int>(p.child)] > node_q.size[static_cast<int>(q.child)]) {
-        const unsigned meets =
-            children_that_meet(a.nodes()[child_p], b.bounds(q.node, q.child), to_a);
-        for (std::uint32_t k = 0; k < 4; ++k)
-          if ((meets >> k & 1) != 0) stack_.push_back({{child_p, k}, q});
-      } else {
-        const unsigned meets =
-            children_that_meet(b.nodes()[child_q], a.bounds(p.node, p.child), to_b);
-        for (std::uint32_t k = 0; k < 4; ++k)
-          if ((meets >> k & 1) != 0) stack_.push_back({p, {child_q, k}});
-      }
-    }
-  }
+  // Returns the pairs of triangles that may meet, each once. `pose` maps b's frame to a's. Belongs
+  // to the walk until the next call.
+  std::span<const CandidatePair> run(const SurfaceTree& a, const SurfaceTree& b, const Pose& pose);
 
  private:
+  // Children of two nodes, in masks, of which each of the one may meet each of the other.
   struct Place {
-    std::uint32_t node, child;
+    std::uint32_t a, b;  // nodes
+    unsigned children;   // bit 4 k + l: of a's l and b's k
   };
-  std::vector<std::pair<Place, Place>> stack_;
+  void step(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned meets);
+
+  std::vector<Place> stack_;
+  std::vector<CandidatePair> found_;
 };
 
 }  // namespace vpm
