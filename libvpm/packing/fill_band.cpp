@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/parallel.h"
@@ -14,6 +16,9 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kBlocksPerTask = 4;
+// Number of new spheres that a block is searched for at a time. A block is at most four radii wide,
+// so that more would mostly overlap.
+constexpr std::size_t kAllOfBlock = std::numeric_limits<std::size_t>::max(), kFewOfBlock = 2;
 // Spheres shrunk by others of their round by more than rounding are searched for again.
 constexpr double kUnchanged = 1 - 1e-9;
 // Widest gap to close, in radii. Wider ones hold another, closer candidate, or are not along a
@@ -30,8 +35,10 @@ constexpr int kMaxSteps = 30;
 // Spheres of one band of radii that were found and may be placed.
 class Candidates {
  public:
-  // Collects spheres of at least `radius`, cut to `cap`. Keeps a reference to `space`.
-  Candidates(Space& space, double radius, double cap) : space_(space), radius_(radius), cap_(cap) {}
+  // Collects spheres of at least `radius`, cut to `cap`, and of each block so many at a time. Keeps
+  // a reference to `space`.
+  Candidates(Space& space, double radius, double cap, std::size_t of_block)
+      : space_(space), radius_(radius), cap_(cap), of_block_(of_block) {}
 
   // Adds the spheres that fit above these blocks.
   void search(const std::vector<std::uint32_t>& blocks);
@@ -61,13 +68,15 @@ class Candidates {
 
   Space& space_;
   double radius_, cap_;
+  std::size_t of_block_;
   std::vector<Candidate> candidates_;  // largest first
 };
 
 void Candidates::search(const std::vector<std::uint32_t>& blocks) {
   std::vector<std::vector<Sphere>> found(blocks.size());
   parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) space_.search(blocks[i], radius_, cap_, found[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      space_.search(blocks[i], radius_, cap_, of_block_, found[i]);
   });
   for (const auto& some : found)
     for (const Sphere& s : some) candidates_.push_back({s, HUGE_VAL, 0, 0});
@@ -134,6 +143,25 @@ bool Candidates::place(const Sphere& sphere, std::vector<std::uint32_t>& touched
   return true;
 }
 
+// Fills these blocks, and those around each sphere that is placed, until no candidate is left. The
+// first `in_contact` spheres of the packing are placed into contact.
+void fill_blocks(Space& space, Candidates& candidates, std::vector<std::uint32_t> blocks,
+                 double radius, std::size_t most, std::size_t in_contact) {
+  while ((!blocks.empty() || !candidates.empty()) && space.spheres().size() < most) {
+    candidates.search(blocks);
+    if (space.spheres().size() < in_contact) {
+      blocks.clear();
+      candidates.place_closest(blocks);
+    } else {
+      candidates.place_all(most, blocks);
+    }
+    std::sort(blocks.begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+    space.update(blocks);
+    std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
+  }
+}
+
 }  // namespace
 
 // Searches as many blocks per round as spheres are wanted.
@@ -141,22 +169,18 @@ void fill_band(Space& space, double radius, double cap, std::size_t most) {
   while (space.spheres().size() < most) {
     std::vector<std::uint32_t> blocks = space.focus(radius, most);
     if (blocks.empty()) return;
-    Candidates candidates(space, radius, cap);
-    while (!blocks.empty() || !candidates.empty()) {
-      candidates.search(blocks);
-      if (space.spheres().size() == most) return;
-      if (space.spheres().size() < kFirstSpheres) {
-        blocks.clear();
-        candidates.place_closest(blocks);
-      } else {
-        candidates.place_all(most, blocks);
-      }
-      std::sort(blocks.begin(), blocks.end());
-      blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-      space.update(blocks);
-      std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
-    }
+    Candidates candidates(space, radius, cap, kAllOfBlock);
+    fill_blocks(space, candidates, std::move(blocks), radius, most, kFirstSpheres);
   }
+}
+
+void fill_roughly(Space& space, double radius, double cap, std::size_t most, bool until_none_fits) {
+  do {
+    std::vector<std::uint32_t> blocks = space.focus(radius, most);
+    if (blocks.empty()) return;
+    Candidates candidates(space, radius, cap, kFewOfBlock);
+    fill_blocks(space, candidates, std::move(blocks), radius, most, 0);
+  } while (until_none_fits && space.spheres().size() < most);
 }
 
 }  // namespace vpm

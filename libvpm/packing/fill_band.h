@@ -14,4 +14,10 @@ inline constexpr std::size_t kFirstSpheres = 200;
 // ones first where they compete for room. Radii must not grow from call to call.
 void fill_band(Space& space, double radius, double cap, std::size_t most);
 
+// Places spheres as fill_band() does, but searches only `most` blocks, and takes few spheres of
+// each at a time, so that room may be left; with `until_none_fits` it goes on until there is none.
+// For rooms so small that their order decides no coverage: the shell about the ball in a ball has
+// tens of thousands of equal ones, which can neither be told apart nor be filled to the last.
+void fill_roughly(Space& space, double radius, double cap, std::size_t most, bool until_none_fits);
+
 }  // namespace vpm

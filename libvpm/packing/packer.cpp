@@ -19,6 +19,10 @@ namespace {
 // packings, so their bands are narrow and each is placed into contact; later ones only need roughly
 // the right order.
 constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
+// Width of a band from kNearlyFull on. Where spheres of one size fit at tens of thousands of
+// places, bounds that are a few per cent too large hide which places hold one: narrower bands would
+// search nearly all of them in vain.
+constexpr double kRoughBand = 0.95;
 // A part of the room that was not searched is worth telling if it may hold spheres larger than the
 // smallest delivered by this factor.
 constexpr double kMuchLarger = 1.01;
@@ -68,10 +72,14 @@ class Packer {
   PackResult run() {
     double radius = std::min<double>(space_.bound(), cap_);
     while (!enough() && radius > smallest_) {
-      const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
-      radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
+      radius = next_radius(radius);
       const std::size_t before = space_.spheres().size();
-      fill_band(space_, radius, cap_, most_);
+      if (is_nearly_full()) {
+        const std::size_t wanted = std::min(options_.spheres, kMaxSpheres);
+        fill_roughly(space_, radius, cap_, wanted, radius <= smallest_);
+      } else {
+        fill_band(space_, radius, cap_, most_);
+      }
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
         filled_ += volume(frame_.to_solid(space_.spheres()[i]));
       if (options_.progress) options_.progress(fraction());
@@ -80,6 +88,15 @@ class Packer {
   }
 
  private:
+  bool is_nearly_full() const { return filled_ >= kNearlyFull * volume_; }
+  // Returns the smallest radius of the band after the one down to `radius`.
+  double next_radius(double radius) const {
+    const double bound = std::min<double>(radius, space_.bound());
+    const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
+    const double next =
+        is_nearly_full() ? std::min(radius, kRoughBand * space_.bound()) : band * bound;
+    return std::max(smallest_, next);
+  }
   // Returns the part of the work that is done, taking all spheres as equally costly. The uncovered
   // volume falls with their number.
   double fraction() const {
@@ -121,7 +138,8 @@ class Packer {
     }
     const double least =
         result.spheres.empty() ? smallest_ : result.spheres.back().radius / frame_.scale;
-    result.partly_searched = space_.left_out() > kMuchLarger * least;
+    result.partly_searched =
+        filled < kNearlyFull * volume_ && space_.left_out() > kMuchLarger * least;
     result.coverage = filled / volume_;
     if (!all.empty()) {
       const auto count = static_cast<double>(result.spheres.size());

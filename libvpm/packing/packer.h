@@ -15,6 +15,9 @@ namespace vpm {
 // Smallest radius searched for, relative to the solid's longest side.
 inline constexpr double kNumericalFloor = 0x1p-18;
 
+// Coverage from which on the rest of the solid is filled roughly.
+inline constexpr double kNearlyFull = 0.99;
+
 struct PackOptions {
   std::size_t spheres = 1000;  // number delivered, unless another limit comes first
   double coverage = 1;         // stop when spheres fill this fraction of the solid
@@ -39,7 +42,8 @@ struct PackResult {
   double coverage = 0;          // volume of the spheres / volume of the solid
   StopReason stop = StopReason::spheres;
   // True if there is so much narrow room that only a part of it, spread over the solid, was
-  // searched, and spheres more than 1 % larger than the smallest delivered may fit elsewhere.
+  // searched, and spheres more than 1 % larger than the smallest delivered may fit elsewhere. False
+  // where the spheres fill kNearlyFull of the solid: then they would add next to nothing.
   bool partly_searched = false;
   // Upper bound of the coverage of any packing of as many spheres: that many of the largest ball,
   // at most 1.
@@ -51,13 +55,17 @@ struct PackResult {
 // spheres, unless max_radius cuts it. The first 200 spheres deviate from that by up to 0.2 % of the
 // radius: in tubes, where there is room anywhere, they move along until they touch. A sphere
 // precedes one that is more than about 1 % larger only if a local search missed the larger one.
+// Once the spheres fill kNearlyFull of the solid, as one does a ball's, the others are many of
+// nearly equal size that add next to nothing: they come in the order of about 10 %, none is moved
+// into contact, and there may be room for more of their size.
 //
 // Inside is what the mesh encloses at least once, and volumes refer to that: triangles of a
 // self-intersecting mesh are no obstacle in the interior of its union.
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
 // bit. A result with fewer spheres is a prefix of one with more under the same other options,
-// except for solids that hold more than twice as many spheres of equal size. Throws
+// except for solids that hold more than twice as many spheres of equal size, and from kNearlyFull
+// on. Throws
 // Error(invalid_argument) for limits that are not positive numbers, Error(refused) for a solid
 // without volume.
 PackResult pack(const Solid& solid, const PackOptions& options);

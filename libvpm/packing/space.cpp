@@ -430,7 +430,8 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
   }
 }
 
-void Space::search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found) {
+void Space::search(std::uint32_t number, double radius, double cap, std::size_t most,
+                   std::vector<Sphere>& found) {
   Block& block = blocks_[number];
   std::vector<Cell> leaves, cells;
   refine(block, radius, cap, leaves, cells);
@@ -440,11 +441,15 @@ void Space::search(std::uint32_t number, double radius, double cap, std::vector<
     if (a.y != b.y) return a.y < b.y;
     return a.z < b.z;
   });
+  std::size_t ascended = 0;  // number of new maxima of at least `radius`
   for (Cell& leaf : leaves) {
-    const double maximum = local_maximum(block, leaf, radius, cap);
+    const std::size_t known = block.maxima.size();
+    const double maximum = ascended < most ? local_maximum(block, leaf, radius, cap) : radius;
     if (maximum < radius) {
       leaf.bound = std::min({leaf.bound, static_cast<float>(maximum),
                              std::nextafter(static_cast<float>(radius), 0.0f)});
+    } else if (block.maxima.size() > known) {
+      ++ascended;
     }
     cells.push_back(leaf);
   }

@@ -64,9 +64,11 @@ class Space {
   bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
 
   // Appends local maxima of the clearance above the block with at least `radius`, cut to `cap`;
-  // they may overlap. The block stays promising while one of them may still be placed. Changes only
-  // the block's own data, so that different blocks may be searched in parallel.
-  void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
+  // they may overlap. Stops when it has ascended to `most` such maxima. The block stays promising
+  // while one of them may still be placed, or while a part of it is not searched. Changes only the
+  // block's own data, so that different blocks may be searched in parallel.
+  void search(std::uint32_t number, double radius, double cap, std::size_t most,
+              std::vector<Sphere>& found);
 
   // Returns the clearance of a point in the solid if it is below `within`. Otherwise kind is none
   // and the value is at most `within`, less where the block lists no farther spheres. The value is

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -118,6 +119,34 @@ TEST(Packer, FewerSpheresAreAPrefixOfMore) {
   for (const std::size_t n : {1u, 10u, 150u}) {
     const std::vector<Sphere> few = pack(solid, {.spheres = n}).spheres;
     EXPECT_TRUE(same_bytes(few, {many.begin(), many.begin() + static_cast<std::ptrdiff_t>(n)}));
+  }
+}
+
+// One sphere fills a ball but for a shell with equal rooms, one below each vertex.
+TEST(Packer, ShellAboutTheBallInABallIsFilled) {
+  const Solid ball = synthetic::make_icosphere(1, 3);
+  const double room = (1 - distance_to_mesh(ball, {0, 0, 0})) / 2;  // radius, with level faces
+  const auto packed = [&](std::size_t spheres, int threads) {
+    set_thread_count(threads);
+    return pack(ball, {.spheres = spheres, .min_radius = 0.94 * room});
+  };
+  const PackResult some = packed(100, 1);
+  ASSERT_EQ(some.spheres.size(), 100U);
+  EXPECT_LE(worst_protrusion(ball, some.spheres), 0);
+  EXPECT_LE(worst_overlap(some.spheres), 0);
+  EXPECT_NEAR(some.spheres[1].radius, room, 0.05 * room);
+  EXPECT_FALSE(some.partly_searched);
+  EXPECT_TRUE(same_bytes(some.spheres, packed(100, 4).spheres));
+
+  const PackResult all = packed(100000, 0);
+  EXPECT_EQ(all.stop, StopReason::min_radius);
+  for (const Vec3 vertex : ball.vertices) {
+    const Vec3 center = (1 - room) * vertex;  // of a sphere of .97 room that would fit
+    const auto is_in_the_way = [&](const Sphere& s) {
+      return norm(s.center - center) < s.radius + 0.97 * room;
+    };
+    const auto first = all.spheres.begin() + 1;
+    EXPECT_TRUE(std::any_of(first, all.spheres.end(), is_in_the_way));
   }
 }
 

@@ -111,7 +111,7 @@ UNTRIED = [
     ]),
     ("takes a large input, or many seconds: tests/mesh/broad_phase_test.cpp, tests/faults", [
         "more such warnings; --verbose shows them",
-        "not all gaps were searched, so larger spheres may fit; a higher --spheres searches more",
+        "the solid has more narrow places than were searched, so some of the smallest spheres could be larger; a higher --spheres searches more",
         "delete doubled or tangled parts, or give `repair` voxel for a new surface",
         "`repair` holes, voxel or flood may close it, or mend it in a mesh editor",
         "delete doubled or inner parts, or pack the parts one by one", "crop it", "crop it, or take every second one",

@@ -280,15 +280,19 @@ void grow_together(const Program& program, const Arguments& a, const CheckedSoli
 void say_result(const Program& program, const Arguments& a, const PackResult& result) {
   const std::string count = std::to_string(result.spheres.size());
   const auto fewer = [&](const char* why) {
-    program.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
+    program.note("packed " + count + " of the " + std::to_string(a.spheres) +
+                 " spheres asked for: " + why);
   };
   if (result.stop == StopReason::min_radius)
     fewer("no further sphere of at least --min-radius fits");
   if (result.stop == StopReason::numerical_floor)
-    fewer("the gaps that are left are narrower than 1/131072 of the longest side");
+    fewer(
+        "what is still empty is narrower than 1/131072 of the longest side, too narrow to search");
   if (result.partly_searched)
     program.note(
-        "not all gaps were searched, so larger spheres may fit; a higher --spheres searches more");
+        "the solid has more narrow places than were searched, so some of the smallest spheres "
+        "could "
+        "be larger; a higher --spheres searches more");
 }
 
 // Says how much of a solid, whose box has these sides in metres, its spheres fill: the size shows a

@@ -55,7 +55,7 @@ $ vpm-query --tool plain.vpmg --cloud wall.vpmc --poses path.txt --for-scene -o 
 2> vpm-query: note: the scene resolves spheres from 0.01* m (points 0.01* m apart, noise * m) to *: the level of 60 is enough (glob)
 $ vpm-pack cube.off -o scene.vpmp --for-scene wall.vpmc --report pack.json && $VALIDATE pack-report pack.json
 2> vpm-pack: note: the scene asks for spheres from 0.01* m (points 0.01* m apart, noise * m) to * (glob)
-2> vpm-pack: note: delivered * of 1000 spheres: no further sphere of at least --min-radius fits (glob)
+2> vpm-pack: note: packed * of the 1000 spheres asked for: no further sphere of at least --min-radius fits (glob)
 2> vpm-pack: note: 81 spheres fill 73.1 % of a solid of 200 x 200 x 200 mm
 $ python3 -c "import json; r = json.load(open('pack.json')); print(r['r_min'] >= r['scene']['smallest_radius'] > 0.01)"
 True

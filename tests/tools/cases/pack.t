@@ -33,7 +33,7 @@ $ vpm-pack cube.off --spheres 1 --validate --report - | python3 -c 'import json,
 
 # Fewer spheres than asked for are delivered with the reason.
 $ vpm-pack cube.off --spheres 1000 --min-radius 0.3 --export one.csv
-2> vpm-pack: note: delivered 1 of 1000 spheres: no further sphere of at least --min-radius fits
+2> vpm-pack: note: packed 1 of the 1000 spheres asked for: no further sphere of at least --min-radius fits
 2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 m
 $ vpm-pack cube.off --min-radius 0.6 --export none.csv
 2> vpm-pack: error: cube.off: no sphere fits: give a smaller --min-radius
