@@ -320,6 +320,21 @@ def cameras(report):
     return f"{most}\n\n{by_scene}"
 
 
+def pairs(report):
+    before = {r["pair"]: r for r in report["before"]["results"]}
+    us = lambda r, place, what: f"{r['us'][place][what]['median']:.0f}"
+    rows = []
+    for r in report["results"]:
+        old, worst = before[r["pair"]], r["us"]["5 %"]
+        change = lambda place, what: f"{us(old, place, what)} → {us(r, place, what)}"
+        rows.append([r["pair"], " / ".join(thousands(n) for n in r["triangles"]), f"{r['volume_error']:.0e}",
+                     us(r, "0 %", "force"), change("5 %", "volume"), f"{worst['volume']['worst']:.0f}",
+                     change("5 %", "force"), f"{worst['force']['worst']:.0f}", change("30 %", "force"),
+                     f"{1e-6 * r['bytes']:.1f}"])
+    return table(["µs; before → now", "triangles", "error of the volume", "0 %", "5 %: volume", "worst pose",
+                  "5 %: with force", "worst pose", "30 %: with force", "both, MB"], rows)
+
+
 def fuzz(report):
     rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
             for name, t in report["targets"].items()]
@@ -339,7 +354,8 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "cameras": (cameras, "cameras"), "fuzz": (fuzz, "fuzz")}}
+             "scaling": (scaling, "scaling"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "fuzz": (fuzz, "fuzz")}}
 
 
 def commits(suites, reports):
