@@ -59,8 +59,8 @@ Report run_timing(const SuiteOptions& options);
 // threads.
 Report run_tradeoff(const SuiteOptions& options);
 
-// Compares packings with greedy packers on voxels, and measures growth and the cost from 10^2 to
-// 10^5 spheres (10^6 with `all`).
+// Measures the coverage of packings, growth, the cost from 10^2 to 10^5 spheres (10^6 with `all`),
+// and the time in smooth solids, with one thread or with `threads`.
 Report run_packing(const SuiteOptions& options);
 
 // Compares pairs of solids with the truth and times them. Sets `failure` where a volume is wrong by
