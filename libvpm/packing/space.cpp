@@ -33,6 +33,8 @@ constexpr float kNearFace = 0.5f;
 // relative and absolute margins: a triangle that it touches may lie between.
 constexpr double kBehind = 1e-3, kTouching = 1e-9;
 constexpr std::size_t kBlocksPerTask = 64;
+// A block gives back memory when more than 1 / this of its cells' is unused.
+constexpr std::size_t kUnusedPart = 4;
 
 // Returns half the diagonal of a cell, rounded up.
 float half_diagonal(int level) {
@@ -395,12 +397,16 @@ float Space::block_bound(const Block& block) {
   return bound;
 }
 
-// Cuts the promising cells of a block down to leaves; moves all others to `rest`.
-void Space::refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
+// Takes the promising cells out of a block and cuts them down to leaves; moves all others to
+// `rest`. Cells that are not promising stay where they are: a block is searched for one band of
+// radii after the other, and each time few of its cells are.
+void Space::refine(Block& block, double radius, double cap, std::vector<Cell>& leaves,
                    std::vector<Cell>& rest) const {
-  std::vector<Cell> pending;
+  const auto promising = std::partition(block.cells.begin(), block.cells.end(),
+                                        [&](const Cell& cell) { return cell.bound < radius; });
+  std::vector<Cell> pending(promising, block.cells.end());
+  block.cells.erase(promising, block.cells.end());
   std::vector<LinearBound> bounds;  // scratch
-  for (const Cell& cell : block.cells) (cell.bound < radius ? rest : pending).push_back(cell);
   while (!pending.empty()) {
     Cell cell = pending.back();
     pending.pop_back();
@@ -433,8 +439,8 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
 void Space::search(std::uint32_t number, double radius, double cap, std::size_t most,
                    std::vector<Sphere>& found) {
   Block& block = blocks_[number];
-  std::vector<Cell> leaves, cells;
-  refine(block, radius, cap, leaves, cells);
+  std::vector<Cell> leaves, rest;
+  refine(block, radius, cap, leaves, rest);
   std::sort(leaves.begin(), leaves.end(), [](const Cell& a, const Cell& b) {
     if (a.d != b.d) return a.d > b.d;
     if (a.x != b.x) return a.x < b.x;
@@ -451,10 +457,12 @@ void Space::search(std::uint32_t number, double radius, double cap, std::size_t 
     } else if (block.maxima.size() > known) {
       ++ascended;
     }
-    cells.push_back(leaf);
   }
-  cells.shrink_to_fit();
-  block.cells = std::move(cells);
+  const std::size_t count = block.cells.size() + leaves.size() + rest.size();
+  block.cells.reserve(count);
+  block.cells.insert(block.cells.end(), leaves.begin(), leaves.end());
+  block.cells.insert(block.cells.end(), rest.begin(), rest.end());
+  if (block.cells.capacity() > count + count / kUnusedPart) block.cells.shrink_to_fit();
   bounds_[number] = block_bound(block);
   std::erase_if(block.maxima, [&](const Sphere& m) {
     if (m.radius < radius) return false;

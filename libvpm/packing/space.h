@@ -127,7 +127,7 @@ class Space {
   void estimate(Cell& cell, const Block& block) const;
   void measure(Cell& cell) const;
   void bound_narrow_part(Cell& cell, const Block& block) const;
-  void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
+  void refine(Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
   double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
