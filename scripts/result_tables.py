@@ -227,6 +227,15 @@ def packing_cost(report):
         for r in meshes) + ", checks of the mesh and certificate included."
 
 
+def packing_smooth(report):
+    rows = [[r["shape"], thousands(int(r["method"].split()[0])), f"{r['coverage']:.4f}"[1:], f"{r['cpu_seconds']:.2f}",
+             f"{r['to_capsule']:.1f}", "yes" if r["certified"] else "no"]
+            for r in report["results"] if r["part"] == "smooth"]
+    spheres = {r["spheres"] for r in report["results"] if r["part"] == "smooth"}
+    return table([f"solid, {' to '.join(thousands(n) for n in sorted(spheres))} spheres", "triangles", "coverage", "CPU s",
+                  "× the capsule", "certified"], rows)
+
+
 def median_and_p99(r):
     return f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
 
@@ -349,7 +358,8 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
              "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
-             "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
+             "packing cost": (packing_cost, "packing"), "packing smooth": (packing_smooth, "packing_smooth"),
+             "replay": (replay, "replay"),
              "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
