@@ -1,6 +1,7 @@
 #include <vpm/depth_stream.h>
 #include <vpm/scene.h>
 
+#include "libvpm/api/depth_images.h"
 #include "libvpm/api/handle_access.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
@@ -70,17 +71,21 @@ Body::Body(const SolidBody& solid, const Pose& to_world)
                 "make it with `with_force`");
 }
 
-Body Body::of_cameras(std::span<const Body> images) {
-  std::vector<DepthBody> list;
-  for (const Body& body : images) {
+std::vector<DepthBody> depth_images_of(std::span<const Body> bodies) {
+  std::vector<DepthBody> images;
+  for (const Body& body : bodies) {
     const DepthBody* const image =
         body.is_solid() ? nullptr : HandleAccess::held(body).as<DepthBody>();
     if (image == nullptr)
       throw Error(ErrorKind::invalid_argument,
                   "a body of several cameras is made of depth images, and of nothing else");
-    list.push_back(*image);
+    images.push_back(*image);
   }
-  const RigBody rig(std::move(list));
+  return images;
+}
+
+Body Body::of_cameras(std::span<const Body> images) {
+  const RigBody rig(depth_images_of(images));
   const std::vector<DepthBody>& different = rig.prepared().images();
   return HandleAccess::make<Body>(different.size() == 1 ? AnyBody(different.front())
                                                         : AnyBody(rig));

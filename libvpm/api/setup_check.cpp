@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/api/depth_images.h"
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/scene/depth/depth_body.h"
+#include "libvpm/setup/cameras_check.h"
 #include "libvpm/setup/cloud_checks.h"
 
 namespace vpm {
@@ -62,6 +64,10 @@ void SetupCheck::see(const Pose& pose, const Result& result, std::size_t tool) {
 
 Remarks SetupCheck::remarks() const {
   return impl().checks.remarks();
+}
+
+std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images) {
+  return check_cameras(depth_images_of(images));
 }
 
 }  // namespace vpm

@@ -31,6 +31,10 @@ COMMANDS = [
     ("vpm-normals points.ply -o out.vpmc --quiet; vpm-query --tool small.vpmg --cloud wall.vpmc --cloud out.vpmc --poses poses.txt",
      "give it as the only (--cloud), or make it of the depth image by vpm-normals",
      "vpm-normals points.ply -o out.vpmc --quiet; vpm-query --tool small.vpmg {0} out.vpmc --poses poses.txt"),
+    *[(f"vpm-normals wall.pgm {CAMERA} {wrong} -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt", advice,
+       f"vpm-normals wall.pgm {CAMERA} {right} -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt", WALL)
+      for wrong, right, advice in (("--depth-scale 500", "--depth-scale 1000", "from camera to world, in metres, and vpm-normals (--depth-scale) right"),
+                                   ("--camera-pose 3000,0,0,0,0,0,1", "--camera-pose 0,0,0,0,0,0,1", "is its vpm-normals --camera-pose in metres"))],
     # Outputs
     ("vpm-pack small.off", r"give (-o OUT.vpmp), (--export), (--report) or (--view)",
      "vpm-pack small.off --spheres 5 -o out.vpmp"),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tools/common/error_text.h"
+#include "tools/common/import_arguments.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
@@ -39,13 +40,11 @@ auto naming_cloud(const std::string& name, const Make& make) {
   }
 }
 
-// Returns the body that the clouds are.
-Body body_of(const std::vector<NamedCloud>& clouds, Denoising points) {
+std::vector<Body> bodies_of(const std::vector<NamedCloud>& clouds, Denoising points) {
   std::vector<Body> bodies;
   for (const auto& [name, cloud] : clouds)
     bodies.push_back(naming_cloud(name, [&] { return Body(cloud, points); }));
-  return bodies.size() == 1 ? bodies.front()
-                            : naming("--cloud", [&] { return Body::of_cameras(bodies); });
+  return bodies;
 }
 
 }  // namespace
@@ -56,8 +55,9 @@ CloudScene::CloudScene(QuerySetup& setup)
 CloudScene::CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds) : setup_(setup) {
   check_cameras(clouds);
   const auto start = std::chrono::steady_clock::now();
-  std::vector<Body> bodies;
-  if (!clouds.empty()) bodies.push_back(body_of(clouds, setup.points));
+  const std::vector<Body> images = bodies_of(clouds, setup.points);
+  std::vector<Body> bodies = images;
+  if (images.size() > 1) bodies = {naming("--cloud", [&] { return Body::of_cameras(images); })};
   bodies.insert(bodies.end(), setup.solids.begin(), setup.solids.end());
   scene_.emplace(std::move(bodies));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -66,8 +66,17 @@ CloudScene::CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds)
     checks_.emplace_back(setup.tools, cloud, setup.options.measure);
     if (setup.view) setup.view->add_cloud(name, cloud);
   }
-  const Remarks doubts = remarks();
-  say(setup.program, doubts);
+  say_at_start(images, clouds);
+}
+
+void CloudScene::say_at_start(const std::vector<Body>& images,
+                              const std::vector<NamedCloud>& clouds) {
+  const auto doubted = images.size() > 1 ? doubted_camera(images) : std::nullopt;
+  const Remarks doubts = doubted ? Remarks{doubted->remark} : remarks();
+  if (doubted)
+    say(setup_.program, clouds[doubted->camera].name, doubts);
+  else
+    say(setup_.program, doubts);
   has_said_ = !doubts.empty();
 }
 

@@ -26,8 +26,8 @@ struct NamedCloud {
 class CloudScene {
  public:
   // Reads and prepares the clouds, if there are any, and adds them to the view, if there is one.
-  // Says what the sizes of clouds and tools let doubt. Throws Error(refused) for several clouds one
-  // of which keeps no camera.
+  // Says what the clouds' cameras, and the sizes of clouds and tools, let doubt. Throws
+  // Error(refused) for several clouds one of which keeps no camera.
   explicit CloudScene(QuerySetup& setup);
   // The same for clouds that were read.
   CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds);
@@ -46,6 +46,8 @@ class CloudScene {
   void warn_at_end() const;
 
  private:
+  // Says which camera's pose is probably wrong; else what sizes let doubt.
+  void say_at_start(const std::vector<Body>& images, const std::vector<NamedCloud>& clouds);
   // Returns what the checks of all clouds doubt: nothing where one camera shows what another does
   // not.
   Remarks remarks() const;

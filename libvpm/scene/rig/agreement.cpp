@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "libvpm/scene/rig/clear_pixel.h"
 
 namespace vpm {
 namespace {
@@ -27,31 +30,12 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// True if the pixels around one show its smooth surface.
-bool is_clear(const DepthSurface& image, std::int32_t u, std::int32_t v) {
-  constexpr std::int32_t kAcross = DepthSampler::kAcross;
-  if (u < kAcross || v < kAcross || u >= image.width - kAcross || v >= image.height - kAcross)
-    return false;
-  const auto normal = [&](std::int32_t x, std::int32_t y) {
-    return widen(image.normals[y * image.width + x]);
-  };
-  const double own = image.inverse_depth(u, v);
-  if (!(own > 0)) return false;
-  for (const auto& [x, y] :
-       {std::pair{u - kAcross, v}, {u + kAcross, v}, {u, v - kAcross}, {u, v + kAcross}}) {
-    if (dot(normal(u, v), normal(x, y)) < kAlike ||
-        !(std::fabs(image.inverse_depth(x, y) - own) <= DepthSampler::kJump * own))
-      return false;
-  }
-  return true;
-}
-
 std::vector<ClearPixel> clear_pixels(const RigCamera& camera) {
   std::vector<ClearPixel> pixels;
   const DepthSurface& image = camera.image;
   for (std::int32_t v = kStep / 2; v < image.height; v += kStep) {
     for (std::int32_t u = kStep / 2; u < image.width; u += kStep) {
-      if (!is_clear(image, u, v)) continue;
+      if (!is_clear_pixel(image, u, v)) continue;
       const double depth = 1 / image.inverse_depth(u, v);
       const Vec3 at{(u - image.k.cx) / image.k.fx * depth, (v - image.k.cy) / image.k.fy * depth,
                     depth};
@@ -78,6 +62,24 @@ void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& othe
 }
 
 }  // namespace
+
+bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v) {
+  constexpr std::int32_t kAcross = DepthSampler::kAcross;
+  if (u < kAcross || v < kAcross || u >= image.width - kAcross || v >= image.height - kAcross)
+    return false;
+  const auto normal = [&](std::int32_t x, std::int32_t y) {
+    return widen(image.normals[y * image.width + x]);
+  };
+  const double own = image.inverse_depth(u, v);
+  if (!(own > 0)) return false;
+  for (const auto& [x, y] :
+       {std::pair{u - kAcross, v}, {u + kAcross, v}, {u, v - kAcross}, {u, v + kAcross}}) {
+    if (dot(normal(u, v), normal(x, y)) < kAlike ||
+        !(std::fabs(image.inverse_depth(x, y) - own) <= DepthSampler::kJump * own))
+      return false;
+  }
+  return true;
+}
 
 RigAgreement agreement_of(std::span<const RigCamera> cameras) {
   constexpr double kUnknown = -1, kNormal = 1.48;  // median to standard deviation

@@ -49,9 +49,10 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images) : images_(std::move(imag
   order_images();
   constexpr auto kMost = static_cast<std::size_t>(RigSurface::kMostCameras);
   if (images_.size() > kMost)
-    throw Error(ErrorKind::invalid_argument, "there are " + std::to_string(images_.size()) +
-                                                 " depth images, but " + std::to_string(kMost) +
-                                                 " cameras at most are one body");
+    throw Error(ErrorKind::invalid_argument,
+                "there are " + std::to_string(images_.size()) + " depth images, but " +
+                    std::to_string(kMost) + " cameras at most are one body",
+                {}, "leave out those that show least");
   silhouettes_.resize(images_.size());
   parallel_for(images_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

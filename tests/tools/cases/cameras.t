@@ -18,6 +18,10 @@ $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.
 $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --view both.html -o again.jsonl --quiet && grep -c '<html' both.html
 1
 
+# A camera whose pose or unit is wrong sees free what others show.
+$ vpm-normals wall.png -o beyond.vpmc --intrinsics 60,60,31.5,23.5 --depth-scale 300 --quiet; vpm-query --tool cube.vpmg --cloud front.vpmc --cloud beyond.vpmc --cloud back.vpmc --pose 0,0,0.95,0,0,0,1 -o wrong.jsonl
+2> vpm-query: warning: beyond.vpmc: 100 % of what it and another camera know is solid to one and free to the other: is its vpm-normals --camera-pose from camera to world, in metres, and vpm-normals --depth-scale right?
+
 # Points without a camera join no others.
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud points.vpmc --poses poses.txt

@@ -1,0 +1,167 @@
+#include "libvpm/setup/cameras_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "libvpm/scene/rig/clear_pixel.h"
+
+namespace vpm {
+namespace {
+
+constexpr double kPixels = 6000;    // about as many of an image are compared
+constexpr double kSame = 0.03;      // per metre of depth: readings further apart contradict
+constexpr double kBeside = 0.5;     // of that distance: free on all sides
+constexpr double kDoubtful = 0.25;  // part of what two cameras share that contradicts
+constexpr int kFew = 20;            // fewer pixels tell nothing
+constexpr double kFarApart = 30;    // times the depths of cameras that cannot see one scene
+
+struct ComparedCamera {
+  DepthSurface image;
+  Pose to_world;
+  std::vector<Vec3> places;  // that clear pixels show, the camera's frame
+  double depth = 0;          // m, the median of these
+};
+
+// Counts pixels that two cameras both know of.
+struct Shared {
+  int same = 0;          // both show the surface there
+  int seen_through = 0;  // one shows a surface where the other saw free space
+  double doubt() const {
+    const int both = same + seen_through;
+    return both >= kFew ? static_cast<double>(seen_through) / both : 0;
+  }
+};
+
+ComparedCamera compared(const DepthBody& body) {
+  ComparedCamera camera{body.surface(), body.to_world(), {}, 0};
+  const DepthSurface& image = camera.image;
+  const double pixels = static_cast<double>(image.width) * image.height;
+  const int step = std::max(1, static_cast<int>(std::sqrt(pixels / kPixels)));
+  std::vector<double> depths;
+  for (int v = step / 2; v < image.height; v += step) {
+    for (int u = step / 2; u < image.width; u += step) {
+      if (!is_clear_pixel(image, u, v)) continue;
+      const double depth = 1 / image.inverse_depth(u, v);
+      camera.places.push_back(
+          {(u - image.k.cx) / image.k.fx * depth, (v - image.k.cy) / image.k.fy * depth, depth});
+      depths.push_back(depth);
+    }
+  }
+  if (depths.empty()) return camera;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  camera.depth = *middle;
+  return camera;
+}
+
+// Adds what one camera knows of places that another shows.
+void add_shared(const ComparedCamera& shows, const ComparedCamera& other, Shared& shared) {
+  const Pose to_other = relative_to(other.to_world, shows.to_world);
+  for (const Vec3& place : shows.places) {
+    const Vec3 at = to_other * place;
+    if (!(at.z > 0)) continue;
+    const double reach = kSame * std::max(place.z, at.z);
+    const SurfaceSample seen = other.image.sample(at);
+    if (!seen.known) continue;
+    shared.same += std::fabs(seen.distance) < reach;
+    if (seen.distance < reach) continue;
+    // Beside what the other camera sees its pose, or this one's, may be wrong by little.
+    const DepthSurface::BallClass around = other.image.classify_ball(at, kBeside * reach);
+    shared.seen_through +=
+        around.side == Side::free && DepthSurface::sight_of(around) == Sight::seen;
+  }
+}
+
+// Returns what each pair of cameras shares, at i * count + j and at j * count + i.
+std::vector<Shared> share_of_pairs(const std::vector<ComparedCamera>& cameras) {
+  const std::size_t count = cameras.size();
+  std::vector<Shared> pairs(count * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) {
+      Shared& shared = pairs[i * count + j];
+      add_shared(cameras[i], cameras[j], shared);
+      add_shared(cameras[j], cameras[i], shared);
+      pairs[j * count + i] = shared;
+    }
+  }
+  return pairs;
+}
+
+// Returns how often the depth of what both show the nearest other camera is away from this one.
+double depths_apart(const std::vector<ComparedCamera>& cameras, std::size_t own) {
+  double least = HUGE_VAL;  // none shows anything
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (k == own) continue;
+    const double depth = std::max(cameras[own].depth, cameras[k].depth);
+    if (!(depth > 0)) continue;
+    const Vec3 way = cameras[k].to_world.translation - cameras[own].to_world.translation;
+    least = std::min(least, norm(way) / depth);
+  }
+  return least;
+}
+
+Remark contradiction(double doubt) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.0f %% of what it and another camera know is solid to one and free to the other: "
+                "is its `import_cloud` `camera_pose` from camera to world, in metres, and "
+                "`depth_scale` right?",
+                100 * doubt);
+  return {true, text};
+}
+
+Remark distance_apart(double depths) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "its camera is %.2g times as far from the others as it sees: is its `import_cloud` "
+                "`camera_pose` in "
+                "metres?",
+                depths);
+  return {true, text};
+}
+
+// Returns the camera that is furthest from the origin of those that are too far from all others.
+std::optional<DoubtedCamera> far_camera(const std::vector<ComparedCamera>& cameras) {
+  std::optional<DoubtedCamera> found;
+  double furthest = 0;
+  for (std::size_t i = 0; cameras.size() > 1 && i < cameras.size(); ++i) {
+    const double depths = depths_apart(cameras, i),
+                 from_origin = norm(cameras[i].to_world.translation);
+    if (!(depths > kFarApart && depths < HUGE_VAL) || !(from_origin > furthest)) continue;
+    found = DoubtedCamera{i, distance_apart(depths)};
+    furthest = from_origin;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images) {
+  std::vector<ComparedCamera> cameras;
+  for (const DepthBody& body : images) cameras.push_back(compared(body));
+  const std::size_t count = cameras.size();
+  const std::vector<Shared> pairs = share_of_pairs(cameras);
+  std::size_t most_doubted = 0;
+  double most = 0, of_pair = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    double sum = 0, worst = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      const double doubt = pairs[i * count + j].doubt();
+      sum += doubt;
+      worst = std::max(worst, doubt);
+    }
+    // Of two cameras alone, the one that shows what is further away.
+    const bool is_more =
+        sum > most || (sum == most && cameras[i].depth > cameras[most_doubted].depth);
+    if (is_more) most = sum, of_pair = worst, most_doubted = i;
+  }
+  if (of_pair >= kDoubtful) return DoubtedCamera{most_doubted, contradiction(of_pair)};
+  if (const std::optional<DoubtedCamera> far = far_camera(cameras)) return far;
+  return std::nullopt;
+}
+
+}  // namespace vpm

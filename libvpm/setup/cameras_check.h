@@ -1,0 +1,18 @@
+// Finds a camera that is probably at another place than its pose tells, or whose depths are in
+// another unit: other cameras saw free what it shows, or it sees free what they show.
+#pragma once
+
+#include <vpm/setup_check.h>
+
+#include <optional>
+#include <span>
+
+#include "libvpm/scene/depth/depth_body.h"
+
+namespace vpm {
+
+// Compares each image with each other one. Returns the camera that contradicts others most, or one
+// that shares nothing with them; nothing where they can be as they are told, or there is one only.
+std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images);
+
+}  // namespace vpm

@@ -1,0 +1,113 @@
+// A camera that is not where its pose tells is found by what the others see.
+
+#include "libvpm/setup/cameras_check.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "tests/query/ring_of_cameras.h"
+
+namespace vpm {
+namespace {
+
+using testing::images_of;
+using testing::ring_of_cameras;
+
+const synthetic::SurfacePtr& box_on_floor() {
+  static const synthetic::SurfacePtr kScene = synthetic::make_union(
+      {synthetic::make_block({0.24, 0.18, 0.2}, {}), synthetic::make_inverted_ball({}, 1.5)});
+  return kScene;
+}
+
+std::vector<Camera> small_cameras(int count) {
+  std::vector<Camera> cameras = ring_of_cameras(count);
+  for (Camera& camera : cameras) {
+    Intrinsics& k = camera.intrinsics;
+    camera.width /= 4, camera.height /= 4;
+    k.fx /= 4, k.fy /= 4, k.cx = (k.cx - 1.5) / 4, k.cy = (k.cy - 1.5) / 4;
+  }
+  return cameras;
+}
+
+// Returns what is said where the camera `wrong` is told to be elsewhere, or its depths are scaled.
+std::optional<DoubtedCamera> said_of(int count, std::size_t wrong, double scale,
+                                     const std::function<Pose(const Pose&)>& told) {
+  std::vector<DepthBody> images;
+  const std::vector<Camera> cameras = small_cameras(count);
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    DepthImage image = synthetic::render(*box_on_floor(), cameras[k]);
+    Camera camera = cameras[k];
+    if (k == wrong) {
+      for (float& depth : image.depth) depth *= static_cast<float>(scale);
+      camera.to_world = told(camera.to_world);
+    }
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  return check_cameras(images);
+}
+Pose as_it_is(const Pose& pose) {
+  return pose;
+}
+Pose calibrated_badly(const Pose& pose) {
+  return {rotation_from_vector({0.005, -0.006, 0.004}) * pose.rotation,
+          pose.translation + Vec3{0.003, -0.003, 0.003}};
+}
+Pose left_out(const Pose&) {
+  return {};
+}
+Pose in_millimetres(const Pose& pose) {
+  return {pose.rotation, 1000 * pose.translation};
+}
+Pose inverted(const Pose& pose) {
+  return inverse(pose);
+}
+
+TEST(CamerasCheck, SaysNothingOfCamerasThatAgree) {
+  for (const int count : {1, 2, 3, 4, 6}) {
+    EXPECT_FALSE(said_of(count, 0, 1, as_it_is)) << count;
+    EXPECT_FALSE(said_of(count, 0, 1, calibrated_badly)) << count;
+  }
+}
+
+TEST(CamerasCheck, SaysNothingOfCamerasThatShareNothing) {
+  const auto wall = [](double x) {
+    Camera camera = small_cameras(1).front();
+    camera.to_world = Pose{{}, {x, 0, 0}};
+    const synthetic::SurfacePtr surface = synthetic::make_wall({0, 0, 1}, {0, 0, -1});
+    return images_of(*surface, {camera}).front();
+  };
+  const std::vector<DepthBody> apart{wall(0), wall(10)};
+  EXPECT_FALSE(check_cameras(apart));
+  const std::vector<DepthBody> far_apart{wall(0), wall(1000)};
+  EXPECT_TRUE(check_cameras(far_apart));
+}
+
+TEST(CamerasCheck, FindsTheOneThatIsElsewhere) {
+  struct Wrong {
+    double scale;
+    Pose (*told)(const Pose&);
+  };
+  for (const Wrong& wrong : {Wrong{1000, as_it_is}, Wrong{2, as_it_is}, Wrong{1, in_millimetres}}) {
+    for (const std::size_t camera : {0, 1, 2}) {
+      const std::optional<DoubtedCamera> said = said_of(3, camera, wrong.scale, wrong.told);
+      ASSERT_TRUE(said) << camera << ' ' << wrong.scale;
+      EXPECT_EQ(said->camera, camera) << said->remark.text;
+      EXPECT_TRUE(said->remark.is_warning);
+    }
+  }
+}
+
+// A wrong pose may also turn a camera to where nothing contradicts it; then nothing is said.
+TEST(CamerasCheck, FindsAPoseThatMakesACameraSeeThroughWhatOthersShow) {
+  for (const auto told : {left_out, inverted}) {
+    const std::optional<DoubtedCamera> said = said_of(3, 0, 1, told);
+    ASSERT_TRUE(said);
+    EXPECT_TRUE(said->remark.is_warning);
+  }
+}
+
+}  // namespace
+}  // namespace vpm
