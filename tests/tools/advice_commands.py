@@ -6,6 +6,8 @@ from advice_words import CAMERA, POSE, TOOL, STEPS, COUPLED, WALL, ROUGH
 
 REMOVED = f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove small.off"
 AT_ONCE, LATER = (f'{{"time":{time},"solids":[[{POSE}]]}}' for time in (0, 9))
+# Clouds of more cameras than are one body.
+MANY = f"[ -f many17.vpmc ] || for k in $(seq 17); do vpm-normals wall.pgm {CAMERA} --camera-pose 0.00$k,0,0,0,0,0,1 -o many$k.vpmc --quiet; done"
 
 # Row: command; advice; command that follows it; volume, if it asks for one; relative tolerance.
 COMMANDS = [
@@ -35,6 +37,8 @@ COMMANDS = [
        f"vpm-normals wall.pgm {CAMERA} {right} -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt", WALL)
       for wrong, right, advice in (("--depth-scale 500", "--depth-scale 1000", "from camera to world, in metres, and vpm-normals (--depth-scale) right"),
                                    ("--camera-pose 3000,0,0,0,0,0,1", "--camera-pose 0,0,0,0,0,0,1", "is its vpm-normals --camera-pose in metres"))],
+    (f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 17) --poses poses.txt", "leave out those that show least",
+     f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 3) --poses poses.txt"),
     # Outputs
     ("vpm-pack small.off", r"give (-o OUT.vpmp), (--export), (--report) or (--view)",
      "vpm-pack small.off --spheres 5 -o out.vpmp"),
