@@ -225,7 +225,8 @@ def pattern_of(text):
     parts = re.split(r"(`[a-z_]+`|%[-+.0-9]*z?[a-z])", text)
     while parts and (not parts[0] or parts[0][0] in "`%"):  # a pattern that begins with any text takes seconds to fail
         parts.pop(0)
-    return "".join(r"[-\w =]+" if part.startswith("`") else ".*" if part.startswith("%") else re.escape(part) for part in parts)
+    return "".join(r"[-\w =]+" if part.startswith("`") else ".*" if part.startswith("%") else re.escape(part.replace("%%", "%"))
+                   for part in parts)
 
 
 def untried_faults(said):
