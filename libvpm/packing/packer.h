@@ -15,7 +15,8 @@ namespace vpm {
 // Smallest radius searched for, relative to the solid's longest side.
 inline constexpr double kNumericalFloor = 0x1p-18;
 
-// Coverage from which on the rest of the solid is filled roughly.
+// Part of the solid's volume that spheres fill when the rest is no longer packed in the order of
+// size, but in rough order.
 inline constexpr double kNearlyFull = 0.99;
 
 struct PackOptions {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/core/median.h"
 #include "libvpm/scene/rig/clear_pixel.h"
 
 namespace vpm {
@@ -42,19 +43,11 @@ ComparedCamera compared(const DepthBody& body) {
   const double pixels = static_cast<double>(image.width) * image.height;
   const int step = std::max(1, static_cast<int>(std::sqrt(pixels / kPixels)));
   std::vector<double> depths;
-  for (int v = step / 2; v < image.height; v += step) {
-    for (int u = step / 2; u < image.width; u += step) {
-      if (!is_clear_pixel(image, u, v)) continue;
-      const double depth = 1 / image.inverse_depth(u, v);
-      camera.places.push_back(
-          {(u - image.k.cx) / image.k.fx * depth, (v - image.k.cy) / image.k.fy * depth, depth});
-      depths.push_back(depth);
-    }
-  }
-  if (depths.empty()) return camera;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  camera.depth = *middle;
+  for_clear_pixels(image, step, [&](int, int, const Vec3& place) {
+    camera.places.push_back(place);
+    depths.push_back(place.z);
+  });
+  if (!depths.empty()) camera.depth = median(depths);
   return camera;
 }
 
@@ -118,8 +111,7 @@ Remark distance_apart(double depths) {
   char text[200];
   std::snprintf(text, sizeof text,
                 "its camera is %.2g times as far from the others as it sees: is its `import_cloud` "
-                "`camera_pose` in "
-                "metres?",
+                "`camera_pose` in metres?",
                 depths);
   return {true, text};
 }
@@ -160,8 +152,7 @@ std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images) {
     if (is_more) most = sum, of_pair = worst, most_doubted = i;
   }
   if (of_pair >= kDoubtful) return DoubtedCamera{most_doubted, contradiction(of_pair)};
-  if (const std::optional<DoubtedCamera> far = far_camera(cameras)) return far;
-  return std::nullopt;
+  return far_camera(cameras);
 }
 
 }  // namespace vpm

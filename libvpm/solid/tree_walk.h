@@ -23,15 +23,15 @@ struct FloatPose {
 unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& other,
                             const FloatPose& pose);
 
-// A triangle of one surface and one of the other.
+// Names a triangle of each of two surfaces that may cross each other, by its index there.
 struct CandidatePair {
   std::uint32_t a, b;
 };
 
 class TreeWalk {
  public:
-  // Returns the pairs of triangles that may meet, each once. `pose` maps b's frame to a's. Belongs
-  // to the walk until the next call.
+  // Returns the pairs of triangles that may meet, each once. `pose` maps b's frame to a's. The
+  // pairs are kept by the walk, and hold until the next call.
   std::span<const CandidatePair> run(const SurfaceTree& a, const SurfaceTree& b, const Pose& pose);
 
  private:

@@ -17,13 +17,14 @@ int exit_code(ErrorKind kind);
   throw Error(ErrorKind::invalid_argument, message);
 }
 
-// Returns what the action returns. Errors that it throws are about the value of `option`.
+// Returns what the action returns. Errors that it throws are about `what`, the value of an option
+// or a file.
 template <class Action>
-auto naming(const std::string& option, const Action& action) {
+auto naming(const std::string& what, const Action& action) {
   try {
     return action();
   } catch (const Error& fault) {
-    throw Error(fault.kind(), fault.problem(), option, fault.hint());
+    throw Error(fault.kind(), fault.problem(), what, fault.hint());
   }
 }
 

@@ -1,6 +1,5 @@
 #include "tools/common/solid_argument.h"
 
-#include <vpm/error.h>
 #include <vpm/pose.h>
 
 #include <filesystem>
@@ -21,11 +20,7 @@ SolidArgument solid_from_text(const std::string& text, const std::string& option
 SolidBody solid_of_file(const Program& program, const std::string& name, bool with_force) {
   if (is_mesh_file(name)) return solid_of_mesh(program, name, with_force);
   const Tool model = Tool::read(name);
-  try {
-    return SolidBody(model, with_force);
-  } catch (const Error& error) {
-    throw Error(error.kind(), error.problem(), name, error.hint());
-  }
+  return naming(name, [&] { return SolidBody(model, with_force); });
 }
 
 }  // namespace vpm::tools

@@ -15,7 +15,7 @@
 
 namespace vpm::tools {
 
-// Cloud that was read from a file.
+// Holds a cloud and the name of the file that it was read from.
 struct NamedCloud {
   std::string name;
   PointCloud cloud;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libvpm/core/median.h"
 #include "libvpm/scene/rig/clear_pixel.h"
 
 namespace vpm {
@@ -24,26 +25,14 @@ struct ClearPixel {
   double depth = 0;
 };
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::vector<ClearPixel> clear_pixels(const RigCamera& camera) {
   std::vector<ClearPixel> pixels;
   const DepthSurface& image = camera.image;
-  for (std::int32_t v = kStep / 2; v < image.height; v += kStep) {
-    for (std::int32_t u = kStep / 2; u < image.width; u += kStep) {
-      if (!is_clear_pixel(image, u, v)) continue;
-      const double depth = 1 / image.inverse_depth(u, v);
-      const Vec3 at{(u - image.k.cx) / image.k.fx * depth, (v - image.k.cy) / image.k.fy * depth,
-                    depth};
-      const Vec3 normal = widen(image.normals[v * image.width + u]);
-      if (-dot(normal, at) > kFrontal * norm(at))
-        pixels.push_back({camera.to_rig * at, camera.to_rig.rotation * normal, depth});
-    }
-  }
+  for_clear_pixels(image, kStep, [&](std::int32_t u, std::int32_t v, const Vec3& at) {
+    const Vec3 normal = widen(image.normals[v * image.width + u]);
+    if (-dot(normal, at) > kFrontal * norm(at))
+      pixels.push_back({camera.to_rig * at, camera.to_rig.rotation * normal, at.z});
+  });
   return pixels;
 }
 

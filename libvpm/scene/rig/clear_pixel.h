@@ -3,11 +3,23 @@
 
 #include <cstdint>
 
+#include "libvpm/cloud/camera.h"
 #include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
 
 // True if the pixels around one show its smooth surface.
 bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v);
+
+// Calls visit(u, v, place) for the clear ones of every `step`-th pixel of every `step`-th row, with
+// the place that the pixel shows, in the camera's frame.
+template <class Visit>
+void for_clear_pixels(const DepthSurface& image, std::int32_t step, const Visit& visit) {
+  for (std::int32_t v = step / 2; v < image.height; v += step) {
+    for (std::int32_t u = step / 2; u < image.width; u += step)
+      if (is_clear_pixel(image, u, v))
+        visit(u, v, unproject(image.k, u, v, 1 / image.inverse_depth(u, v)));
+  }
+}
 
 }  // namespace vpm

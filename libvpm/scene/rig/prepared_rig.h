@@ -63,7 +63,7 @@ class PreparedRig {
 
   void order_images();
   void place_cameras();
-  // Returns all points, which are joined on the first call: few queries read them.
+  // Returns the points of all images. The first call makes the list, for few queries read it.
   const Points& points() const;
 
   std::uint64_t serial_ = next_serial();

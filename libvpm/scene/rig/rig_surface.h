@@ -323,8 +323,8 @@ struct RigSurface {
     }
     return found;
   }
-  // Replaces what a camera's tangent plane tells of the way out by the nearest place of its
-  // surface, unless a silhouette is nearer.
+  // Searches the nearest place of the surface that a camera sees, and takes the way there for the
+  // one that its tangent plane told, unless a silhouette is nearer.
   template <class Place>
   [[gnu::always_inline]] static VPM_HD void search_way(const RigCamera& camera, const Place& x,
                                                        RigReading<RealOf<Place>>& way) {
@@ -487,7 +487,8 @@ struct RigSurface {
     const Real offset = square_root(u * u + v * v), along = u * out_u + v * out_v;
     const Mask is_behind = reading.distance < 0;
     const Real side = is_behind ? -one : one;
-    // At a corner, or a thin thing, the direction is not that of the nearest pixel.
+    // At the corner of a silhouette, or beside something thin, the nearest pixel's direction is
+    // wrong: the direction is that from the pixel to the place.
     const Mask is_corner = (side * along < kCornerCosine * offset) & (offset > 1);
     const Real by = offset > 1 ? offset : one;
     out_u = is_corner ? quotient(side * u, by) : out_u;

@@ -127,8 +127,8 @@ std::vector<int> nearest_rows(const std::vector<std::uint32_t>& numbers, int wid
   return rows;
 }
 
-// Finds the nearest silhouette pixel of each pixel of a row, from the nearest in each column. Of
-// equally near ones the first column counts.
+// Finds for each pixel of a row the silhouette pixel that is nearest, given the nearest ones of all
+// columns. Where several are equally near, the leftmost is taken.
 class NearestInRow {
  public:
   explicit NearestInRow(int width) : width_(width), keys_(static_cast<std::size_t>(width)) {}
