@@ -21,25 +21,31 @@ constexpr double kRounding = 1e-13;  // rounding of coordinates in the unit cube
 
 using Polygon = std::vector<Vec3>;
 
-// Returns the part of a convex polygon about the origin with sign * coordinate <= limit.
-Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
-  Polygon kept;
+// Writes the part of a convex polygon about the origin with sign * coordinate <= limit to `kept`.
+void clip(const Polygon& polygon, int axis, double sign, double limit, Polygon& kept) {
+  kept.clear();
   for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3 p = polygon[k], q = polygon[(k + 1) % polygon.size()];
+    const Vec3 p = polygon[k], q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
     const double beyond_p = sign * coordinate(p, axis) - limit,
                  beyond_q = sign * coordinate(q, axis) - limit;
     if (beyond_p <= 0) kept.push_back(p);
     if ((beyond_p <= 0) != (beyond_q <= 0))
       kept.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
   }
-  return kept;
 }
 
 // Returns the part of a triangle in the cube with this half edge, relative to its centre.
 Polygon clipped(const TriangleBvh::Corners& t, Vec3 center, double half_edge) {
-  Polygon polygon{t.a - center, t.b - center, t.c - center};
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double sign : {-1.0, 1.0}) polygon = clipped(polygon, axis, sign, half_edge);
+  constexpr std::size_t kCorners = 3 + 6;  // each side of the cube adds one at most
+  Polygon polygon, kept;
+  polygon.reserve(kCorners), kept.reserve(kCorners);
+  polygon = {t.a - center, t.b - center, t.c - center};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      clip(polygon, axis, sign, half_edge, kept);
+      polygon.swap(kept);
+    }
+  }
   return polygon;
 }
 

@@ -90,14 +90,14 @@ TEST(Validation, AgreesWithTheCertificateWithinItsBound) {
     double filled = 0;
     for (const Sphere& s : spheres) filled += volume(s);
     ASSERT_TRUE(certify(solid, spheres).holds);
-    const Validation sound = validate_packing(solid, spheres, 2 * kVoxels);
+    const Validation sound = validate_packing(solid, spheres, kVoxels);
     EXPECT_NEAR(sound.coverage, filled / volume_mesh, sound.coverage_error);
     expect_clean(sound);
 
     // Both methods see protrusions beyond the stated limit.
     spheres[0].radius += 2 * sound.detection_limit;
     const Certificate broken = certify(solid, spheres);
-    const Validation seen = validate_packing(solid, spheres, 2 * kVoxels);
+    const Validation seen = validate_packing(solid, spheres, kVoxels);
     EXPECT_FALSE(broken.holds);
     EXPECT_GT(seen.protruding_voxels, 0U);
     // Distances of voxels are floats.

@@ -83,7 +83,7 @@ TEST_P(SameBits, ForAnyNumberOfThreads) {
   const Cloud seen = cloud();
   set_thread_count(1);
   const std::vector<Result> one = sweep(seen, tool);
-  for (int threads = 2; threads <= 16; ++threads) {
+  for (const int threads : {2, 3, 7, 16}) {
     set_thread_count(threads);
     expect_same(one, sweep(seen, tool));
   }
