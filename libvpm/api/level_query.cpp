@@ -136,4 +136,8 @@ std::vector<Result> LevelQuery::parts(std::size_t tool) const {
   return impl().query_of(tool).query().parts();
 }
 
+std::vector<Contact> LevelQuery::contacts(std::size_t tool) const {
+  return impl().query_of(tool).query().contacts();
+}
+
 }  // namespace vpm

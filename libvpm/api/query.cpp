@@ -71,6 +71,10 @@ std::vector<Result> Query::parts() const {
   return impl().queries.front().parts();
 }
 
+std::vector<Contact> Query::contacts() const {
+  return impl().queries.front().contacts();
+}
+
 std::uint32_t Query::level(std::size_t tool) const {
   if (tool >= impl().queries.size())
     throw Error(ErrorKind::invalid_argument, "the query has no tool " + std::to_string(tool));

@@ -54,14 +54,33 @@ BodySum SolidQuery::sum_of(const SharedSolid& shared, const Pose& pose) const {
   return body;
 }
 
+// Returns the contacts, with torques about the tool's centre of mass. Where rounding makes more
+// than the tool of what is shared, sum_of() takes it for all of the tool, and so do the contacts.
+std::vector<ContactPatch> SolidQuery::patches_of(const SharedSolid& shared, const Pose& pose,
+                                                 std::size_t body) const {
+  const Vec3 arm = shared.centroid - pose * tool_.center_of_mass;
+  const double part = std::min(tool_.volume / shared.volume, 1.0);
+  std::vector<ContactPatch> patches;
+  for (const SharedContact& c : shared.contacts)
+    patches.push_back({body,
+                       part * c.volume,
+                       c.centroid,
+                       c.area,
+                       c.depth,
+                       {c.force, c.torque + cross(arm, c.force)},
+                       c.patches});
+  return patches;
+}
+
 SolidAnswer SolidQuery::run(const SolidsAt& solids, std::size_t k, const Pose& pose,
-                            std::span<SphereState> states) {
+                            std::span<SphereState> states, std::uint32_t contacts) {
   const PlacedSolid& solid = solids.solids[k];
   const Pose at = exact_pose(solids.pose(k));
-  const SharedSolid shared = pair_with(solid, k).measure(pose, at);
-  SolidAnswer answer{sum_of(shared, pose), shared.closure};
+  const SharedSolid shared = pair_with(solid, k).measure(pose, at, true, contacts);
+  SolidAnswer answer{sum_of(shared, pose), shared.closure, {}};
   std::fill(states.begin(), states.end(), SphereState::outside);
   if (answer.body.sum.volume.value == 0) return answer;
+  answer.contacts = patches_of(shared, pose, solid.place);
   note_states(tool_.spheres, pose, *solid.surface, at, states);
   for (const SphereState state : states) {
     answer.body.boundary += state == SphereState::boundary;

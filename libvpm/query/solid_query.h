@@ -4,6 +4,7 @@
 #include <vpm/query_types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "libvpm/measure/body_sum.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/query/contact_list.h"
 #include "libvpm/solid/placed_solid.h"
 #include "libvpm/solid/solid_pair.h"
 
@@ -22,12 +24,18 @@ struct SolidsAt {
   std::span<const Pose> poses;  // of each, mesh to world; none: where the solids say
 
   const Pose& pose(std::size_t k) const { return poses.empty() ? solids[k].to_world : poses[k]; }
+  // Returns the place in the scene's list of the k-th body that is no solid.
+  std::size_t place_of_other(std::size_t k) const {
+    for (const PlacedSolid& solid : solids) k += solid.place <= k;  // solids are in their order
+    return k;
+  }
 };
 
 // What one solid gives.
 struct SolidAnswer {
   BodySum body;
   double closure = 0;  // SharedSolid::closure
+  std::vector<ContactPatch> contacts;
 };
 
 // Refers to its tool, which must outlive it. Belongs to one thread.
@@ -43,10 +51,11 @@ class SolidQuery {
 
   // Returns what the k-th solid gives for the tool at a pose, in the tool's axes and units: the
   // volume to rounding, since all of it is rounded to 2^-60 of the tool. `states` receives that of
-  // each of the largest spheres. Throws what prepare() throws, and Error(refused) if the shared
-  // boundary does not close.
+  // each of the largest spheres. Finds the `contacts` largest contacts, and the sum of all others,
+  // as wrenches without stiffness; none for 0. Throws what prepare() throws, and Error(refused) if
+  // the shared boundary does not close.
   SolidAnswer run(const SolidsAt& solids, std::size_t k, const Pose& pose,
-                  std::span<SphereState> states);
+                  std::span<SphereState> states, std::uint32_t contacts = 0);
 
  private:
   struct Pair {
@@ -56,6 +65,8 @@ class SolidQuery {
 
   SolidPair& pair_with(const PlacedSolid& solid, std::size_t k);
   BodySum sum_of(const SharedSolid& shared, const Pose& pose) const;
+  std::vector<ContactPatch> patches_of(const SharedSolid& shared, const Pose& pose,
+                                       std::size_t body) const;
 
   const ToolModel& tool_;
   std::shared_ptr<const SolidSurface> surface_;  // null before the first call

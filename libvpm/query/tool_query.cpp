@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/exact_pose.h"
@@ -45,6 +46,9 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
             "leave the device or the other measure out");
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
+            "leave the other measure or device out");
+  if (options.contacts > 0 && (options.measure == Measure::paper || options.device.is_cuda()))
+    invalid("contacts are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
   if (options.shadows == Shadows::solid && options.measure == Measure::paper)
     invalid("solid shadows are a matter of the refined measure", "leave the other measure out");
@@ -106,18 +110,20 @@ Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given, const S
   check(scene, solids);
   if (device_) device_->keep_only(scene);
   SceneSum sum;
-  parts_.clear();
+  parts_.clear(), patches_.clear();
   last_pose_ = pose;
   has_joined_states_ = scene.size() > 1 || !solids.solids.empty();
   if (has_joined_states_) of_body_.assign(states_.size(), SphereState::outside);
   for (std::size_t k = 0; k < scene.size(); ++k) {
     parts_.push_back({measure(scene[k], k, pose), std::nullopt, 0});
     sum.add(parts_.back().body);
+    if (options_.contacts > 0) note_contacts(solids.place_of_other(k), pose);
     if (has_joined_states_) add_states();
   }
-  if (solids.solids.empty()) return finished(sum, pose, std::nullopt);
-  const double closure = add_solids(solids, pose, sum);
-  return finished(sum, pose, closure);
+  std::optional<double> closure;
+  if (!solids.solids.empty()) closure = add_solids(solids, pose, sum);
+  whole_ = finished(sum, pose, closure);
+  return whole_;
 }
 
 Collides ToolQuery::collides(std::span<const AnyBody> scene, const Pose& given, double unseen_limit,
@@ -156,6 +162,30 @@ std::vector<Result> ToolQuery::parts() const {
     results[next++] = result(part);
   }
   return results;
+}
+
+std::vector<Contact> ToolQuery::contacts() const {
+  std::vector<ContactPatch> patches = patches_;
+  for (ContactPatch& patch : patches) {
+    patch.wrench.force = options_.stiffness * patch.wrench.force;
+    patch.wrench.torque = options_.stiffness * patch.wrench.torque;
+  }
+  return listed_contacts(std::move(patches), options_.contacts, whole_, options_.stiffness, tool_);
+}
+
+// Notes the contacts with the body that was measured last.
+void ToolQuery::note_contacts(std::size_t body, const Pose& pose) {
+  for (const CellContact& contact : refined_->contacts()) {
+    BodySum of_contact;
+    of_contact.sum = contact.sum;
+    SceneSum sum;
+    sum.add(of_contact);
+    const Result part = sum.result(tool_, pose.rotation);
+    const Vec3 centroid = 1 / contact.sum.volume.real() * contact.moment;
+    patches_.push_back({body, part.volume, pose * (tool_.center_of_mass + centroid),
+                        -tool_.volume * (pose.rotation * contact.section), contact.depth,
+                        part.wrench});
+  }
 }
 
 // Joins the states at the last body with those at the bodies before: cut by any, else inside any.
@@ -243,7 +273,8 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
 double ToolQuery::add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum) {
   double closure = 0;
   for (std::size_t k = 0; k < solids.solids.size(); ++k) {
-    const SolidAnswer found = solid_query_->run(solids, k, pose, states_);
+    const SolidAnswer found = solid_query_->run(solids, k, pose, states_, options_.contacts);
+    patches_.insert(patches_.end(), found.contacts.begin(), found.contacts.end());
     sum.add(found.body);
     closure = std::max(closure, found.closure);
     parts_.push_back({found.body, found.closure, solids.solids[k].place});
@@ -270,6 +301,9 @@ Result ToolQuery::finished(const SceneSum& sum, const Pose& pose,
   result.closure = closure;
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
+  if (options_.contacts > 0)
+    result.wrench =
+        wrench_of_contacts(result.wrench, result.volume, options_.stiffness, tool_.radius);
   return result;
 }
 

@@ -14,6 +14,7 @@
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/backend/device_measure.h"
 #include "libvpm/measure/body_sum.h"
+#include "libvpm/query/contact_list.h"
 #include "libvpm/query/solid_query.h"
 #include "libvpm/scene/any_body.h"
 
@@ -69,6 +70,8 @@ class ToolQuery {
   // Returns what each body gave at the last single pose, in the scene's order of bodies: solids at
   // their places, the others between them.
   std::vector<Result> parts() const;
+  // Returns the contacts at the last single pose. Has the contract of Query::contacts.
+  std::vector<Contact> contacts() const;
 
  private:
   // Memory of a batch on a device, one of each for a job; used again, since new memory costs as
@@ -87,6 +90,7 @@ class ToolQuery {
   void check(std::span<const AnyBody> scene, const SolidsAt& solids) const;
   BodySum measure(const AnyBody& body, std::size_t place, const Pose& pose);
   double add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum);
+  void note_contacts(std::size_t body, const Pose& pose);
   void add_states() const;
   void join_states() const;
   Result finished(const SceneSum& sum, const Pose& pose, std::optional<double> closure) const;
@@ -110,6 +114,9 @@ class ToolQuery {
   };
   std::vector<Part> parts_;  // solids last
   Pose last_pose_;
+  // Of the last single pose, if contacts are asked for: patches without stiffness, and the answer.
+  std::vector<ContactPatch> patches_;
+  Result whole_;
   BatchRoom batch_room_;
 };
 

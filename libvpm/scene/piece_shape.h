@@ -1,6 +1,7 @@
 // Defines the shape that stands for a compact piece of the tool: how far it reaches toward a plane,
 // and which fraction of it a plane leaves behind. The rest of the measure and the bodies of the
-// scene ask these two functions and do not know which shape that is.
+// scene ask these two functions and do not know which shape that is. Contacts also ask where the
+// plane cuts it, and how much of it lies how far behind.
 #pragma once
 
 #include "libvpm/core/division.h"
@@ -26,6 +27,22 @@ struct BallShape {
                                                      const Normal& /*normal*/) const {
     const Real in_radii = quotient(distance, radius), away = 1 - in_radii;
     return away * away * (2 + in_radii) / 4;
+  }
+  // Returns how fast that fraction grows as the plane rises, 1/m: the area in which the plane cuts
+  // the piece, in parts of its volume.
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real section_of_cut(const Real& distance,
+                                                    const Normal& /*normal*/) const {
+    const Real in_radii = quotient(distance, radius);
+    return quotient(3 * (1 - in_radii) * (1 + in_radii), 4 * radius);
+  }
+  // Returns how far the part behind lies behind the piece's middle, along the normal, times the
+  // fraction that it is, m.
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real moment_of_cut(const Real& distance,
+                                                   const Normal& /*normal*/) const {
+    const Real in_radii = quotient(distance, radius), section = (1 - in_radii) * (1 + in_radii);
+    return 3 * radius * section * section / 16;
   }
 };
 // The shape of all pieces: to try another one, name it here.

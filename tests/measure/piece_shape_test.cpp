@@ -49,6 +49,21 @@ TEST(PieceShape, BoxesAreCutExactly) {
   }
 }
 
+// The section is the derivative of the fraction; the moment is made of sections where they lie.
+TEST(PieceShape, SectionAndMomentBelongToTheFraction) {
+  const BallShape<double> ball{0.7};
+  const Vec3 normal{0, 0, 1};
+  double moment = 0;
+  constexpr double kStep = 1e-3;
+  for (double at = 0.7 - kStep / 2; at > -0.7; at -= kStep) {
+    const double section = ball.section_of_cut(at, normal), below = at - kStep / 2;
+    EXPECT_NEAR(ball.fraction_of_cut(below, normal) - ball.fraction_of_cut(at + kStep / 2, normal),
+                kStep * section, 1e-9);
+    moment += at * kStep * section;
+    EXPECT_NEAR(ball.moment_of_cut(below, normal), moment, 1e-6);
+  }
+}
+
 TEST(PieceShape, BallsOfTheSameMomentErrByAPartOfAPieceOnly) {
   // A cube of edge a has the second moment of a ball of radius a sqrt(5 / 12).
   const BallShape<double> ball{0.25 * std::sqrt(5.0 / 12)};

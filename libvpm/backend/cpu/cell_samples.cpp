@@ -192,4 +192,26 @@ ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples
   return {sum(all.weight), {sum(all.moment.x), sum(all.moment.y), sum(all.moment.z)}, any(any_cut)};
 }
 
+VPM_VECTOR_CLONES
+std::uint32_t add_section(const ClipPlane& plane, std::span<const CellSample> samples,
+                          CellSection& cell) {
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  CellSectionOf<Double4> lanes;
+  std::uint32_t bits = 0;
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(samples, first);
+    const Vec3x4 center(a.center, b.center, c.center, d.center);
+    const PieceShape<Double4> shape{widen(Float4{a.radius, b.radius, c.radius, d.radius})};
+    Double4 weight{a.weight, b.weight, c.weight, d.weight};
+    for (std::uint32_t k = count - first; k < kFour; ++k) weight[k] = 0;
+    const Mask4 is_behind = lanes.add(shape, center, weight, plane);
+    for (std::uint32_t k = 0; k < kFour; ++k) bits |= (is_behind[k] != 0 ? 1U : 0U) << (first + k);
+  }
+  cell.weight += sum(lanes.weight);
+  cell.moment += {sum(lanes.moment.x), sum(lanes.moment.y), sum(lanes.moment.z)};
+  cell.below += sum(lanes.below);
+  cell.section += sum(lanes.section);
+  return bits;
+}
+
 }  // namespace vpm

@@ -9,6 +9,7 @@
 
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/measure/cell_measure.h"
+#include "libvpm/measure/contact_patch.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/scene/rig/rig_surface.h"
@@ -49,6 +50,11 @@ void closest_normals(const RigSurface& surface, std::span<const PlaceSample> pla
 // Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
                                std::uint32_t count);
+
+// Adds samples, kAtOnce at most, to what a plane leaves behind of their cell. Returns a bit for
+// each of which a part is behind.
+std::uint32_t add_section(const ClipPlane& plane, std::span<const CellSample> samples,
+                          CellSection& cell);
 
 // Adds those parts of the tool that are free and were not seen at their centroids.
 void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,

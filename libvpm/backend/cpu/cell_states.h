@@ -130,6 +130,7 @@ struct CellStates {
   // Keeps as many parts as were ever used; the first `part_count` are in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;
+  bool keeps_sums = false;  // in `results`, of each row that counts
 };
 
 // Bundles what the steps of a query know of its pose.

@@ -21,7 +21,11 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       shared_level_(std::make_shared<const SpatialLevel>(tool, level)),
       level_(*shared_level_),
       cells_(level_),
-      is_coherent_(options.coherent) {}
+      is_coherent_(options.coherent) {
+  if (options.contacts == 0) return;
+  contacts_.emplace(tool, level_);
+  cells_.keeps_sums = true;
+}
 
 std::optional<BodySum> RefinedMeasure::run_until(Until until, const AnyBody& body, const Pose& pose,
                                                  std::size_t place) {

@@ -12,6 +12,7 @@
 
 #include "libvpm/backend/cpu/cell_classifier.h"
 #include "libvpm/backend/cpu/cell_states.h"
+#include "libvpm/backend/cpu/contact_finder.h"
 #include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
@@ -56,6 +57,7 @@ class RefinedMeasure {
   std::optional<BodySum> run_on_until(Until until, const Surface& surface, const Pose& to_world,
                                       const Pose& pose, std::size_t place = 0) {
     BodySum result;
+    if (contacts_) contacts_->start();
     PoseMemory* const memory = memory_of(place);
     const Pose to_surface = pose_in_body(to_world, pose, tool_.center_of_mass);
     const PoseWork<Surface> work{tool_radius_, level_, surface, to_surface, cells_};
@@ -75,6 +77,7 @@ class RefinedMeasure {
     if (memory != nullptr && cut.are_none()) inside.run_from(*memory, to_world);
     result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
     result.inside = add_up(work, inside, region, result.sum);
+    if (contacts_) contacts_->run(work);
     if constexpr (TellsSight<Surface>) result.unseen = cells_.unseen;
     if (memory == nullptr) return result;
     if (result.boundary + result.inside > 0)
@@ -82,6 +85,12 @@ class RefinedMeasure {
     else
       memory->turn();  // in free space there is nothing to look for
     return result;
+  }
+
+  // Returns the contacts with the body at the last run, in no particular order but always the same,
+  // if the options ask for them. They add up to its sum.
+  std::span<const CellContact> contacts() const {
+    return contacts_ ? contacts_->found() : std::span<const CellContact>();
   }
 
   // Reads the states of the spheres at the last run, one per sphere.
@@ -143,6 +152,7 @@ class RefinedMeasure {
       if (cells_.cells[i] != CellClass::uniform && cells_.cells[i] != CellClass::partial)
         return whole.add(i);
       const ToolSum part = sum_of(work, inside, i, last_cut, unseen);
+      if (cells_.keeps_sums) cells_.results[i].sum = part;
       sum.add(part);
       if (counts(part))
         ++count;
@@ -208,7 +218,8 @@ class RefinedMeasure {
   const SpatialLevel& level_;
   CellStates cells_;
   bool is_coherent_;
-  std::deque<PoseMemory> memories_;  // for each body of the scene, if poses are coherent
+  std::optional<ContactFinder> contacts_;  // if they are asked for
+  std::deque<PoseMemory> memories_;        // for each body of the scene, if poses are coherent
 };
 
 }  // namespace vpm

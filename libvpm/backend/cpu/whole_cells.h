@@ -26,6 +26,7 @@ class WholeCells {
     const CellView cell = work_.level.cell(row);
     const bool compact = is_compact(cell.radius, work_.tool_radius.length);
     const CellClass found = std::exchange(work_.states.cells[row], CellClass::free);
+    if (work_.states.keeps_sums) work_.states.results[row].sum = {};
     if (whole_part(compact, true, false) == WholePart::cell)
       return add({row, found}, piece_of(work_.level.mass(row), cell));
     for (std::uint32_t b = cell.begin; b < cell.end; ++b) {
@@ -58,6 +59,7 @@ class WholeCells {
     };
     pieces_.push(measure_, takes, [&](std::uint32_t k, const ToolSum& part) {
       sum_.add(part);
+      if (work_.states.keeps_sums) work_.states.results[origins_[k].row].sum.add(part);
       CellClass& cell = work_.states.cells[origins_[k].row];
       if (!counts(part) || cell != CellClass::free) return;
       cell = origins_[k].found;

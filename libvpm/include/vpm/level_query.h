@@ -109,6 +109,8 @@ class VPM_API LevelQuery {
   std::span<const SphereState> states(std::size_t tool = 0) const;
   // Returns what each body gave at the last single pose, as Query::parts().
   std::vector<Result> parts(std::size_t tool = 0) const;
+  // Returns the contacts at the last single pose, as Query::contacts().
+  std::vector<Contact> contacts(std::size_t tool = 0) const;
 
  private:
   struct Impl;

@@ -79,6 +79,11 @@ class VPM_API Query {
   // answer was their sum. Unspecified after jobs.
   std::vector<Result> parts() const;
 
+  // Returns the contacts at the last single pose (vpm/query_types.h), whose number
+  // QueryOptions::contacts limits; they add up to the answer. Empty if that asks for none or the
+  // volume is 0; unspecified after jobs and after collides().
+  std::vector<Contact> contacts() const;
+
   // Returns the number of spheres of the level that is used of a tool.
   std::uint32_t level(std::size_t tool = 0) const;
 

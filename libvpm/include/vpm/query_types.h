@@ -30,6 +30,11 @@ struct QueryOptions {
   bool coherent = false;
   Shadows shadows = Shadows::near;  // solid: refined measure, in depth images
   double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  // Contacts of each single pose that Query::contacts() lists each by itself; all others are summed
+  // in one more. 0: none are found, which takes less time. Refined measure on the CPU only. Force
+  // and torque of a result are rounded then, to 2^-46 of its volume times the stiffness (times the
+  // tool radius), so that contacts can add up to them.
+  std::uint32_t contacts = 0;
 };
 
 // Question of a batch: a pose (tool to world coordinates) of one of the query's tools.
@@ -51,28 +56,41 @@ struct Wrench {
   friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
 };
 
-// A contact: a connected patch of what two bodies a and b share. Contacts come in order of their
-// volumes, largest first (then of the centroid's x, y and z); the last one is the sum of all that
-// were not asked for. What is asked of two solids gives the same contacts in the same bits, and a
-// and b swapped give them with the signs of normal and wrench turned. Along a path volume, centroid
-// and wrench of a contact are continuous as those of the whole are, but where contacts merge or
-// split; its place in the list may change, the nearest centroid is the same contact. The hollows of
-// a contact are part of it. Contacts are told of two solids (OverlapOptions in vpm/solid.h);
-// queries of scenes tell none yet.
+// A contact: a connected patch of what two bodies a and b share; where a scene is asked, a is the
+// tool and b one body of the scene. Contacts come in order of their volumes, largest first (then of
+// the centroid's x, y and z, then of the body's place); the last one is the sum of all that were
+// not asked for. Volumes add up to that of the whole in any order, in the same bits, and so do
+// forces and torques. What is asked of two solids gives the same contacts in the same bits, and a
+// and b swapped give them with the signs of normal and wrench turned; a scene gives the same bits
+// for any order of its bodies. Along a path volume, centroid and wrench of a contact are continuous
+// as those of the whole are, but where contacts merge or split; its place in the list may change,
+// the nearest centroid is the same contact. The hollows of a contact are part of it.
+//
+// What two solids share hangs together where their meshes say so, exactly. Of a depth image, or of
+// points, the cells of the tool that count hang together where places of them behind the surface
+// are nearer to each other than an eighth of the tool radius, and not where they are a quarter
+// apart; a cell is never divided between contacts.
+//
+// OverlapOptions (vpm/solid.h) ask for contacts of two solids, QueryOptions for those of a scene.
 struct Contact {
+  // Place of a contact that sums patches of several bodies.
+  static constexpr std::size_t kSeveralBodies = static_cast<std::size_t>(-1);
+
   std::size_t body = 0;  // b's place in the scene's list; 0 where two solids are asked
-  double volume = 0;  // m^3; volumes of the list add up to that of the whole, in any order, in the
-                      // same bits
-  Vec3 centroid;      // of the volume, world's frame, m
+  double volume = 0;     // m^3
+  Vec3 centroid;         // of the volume, world's frame, m
   // ∫ n dA over the part of a's surface inside b, world's axes, from a into b: its direction, and
-  // its length in m^2, the area of the cut surface as seen along the normal. 0 if it cancels.
+  // its length in m^2, the area of the cut surface as seen along the normal. 0 if it cancels. Of
+  // images and points it is that of their surface inside the tool, by the mean plane in each cell;
+  // 0 where none is cut.
   Vec3 normal;
   double area = 0;
   // Greatest depth of a's surface below b's or of b's below a's, m: that at a corner of the meshes,
   // chosen by how deep the pieces of surface lie by which forces are summed. 0 without forces.
+  // Below the surface of images and points: that of the tool's spheres.
   double depth = 0;
-  // What the contact adds to force and torque of the whole, which it is about the same point as.
-  // They add up as the volumes do. 0 without forces.
+  // What the contact adds to force and torque of the whole, which it is about the same point as. 0
+  // without forces.
   Wrench wrench;
   std::uint32_t patches = 1;  // that it sums; more than 1 only in the last
 

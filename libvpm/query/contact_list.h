@@ -1,0 +1,27 @@
+// Lists the contacts of a scene so that they add up to its answer in bits.
+#pragma once
+
+#include <vpm/query_types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/measure/contact_patch.h"
+#include "libvpm/model/tool_model.h"
+
+namespace vpm {
+
+// Returns the wrench of an answer of this volume, rounded so that contacts can add up to it:
+// QueryOptions::contacts tells to what.
+Wrench wrench_of_contacts(const Wrench& wrench, double volume, double stiffness,
+                          double tool_radius);
+
+// Returns the `count` largest patches, and one contact with all others, as vpm/query_types.h tells.
+// `whole` is the answer, its wrench rounded, of which the patches are the parts but for rounding;
+// the largest takes what that leaves. Patches below 2^-60 of the tool's volume, to which answers
+// are rounded, are left out. The order of patches changes no bit.
+std::vector<Contact> listed_contacts(std::vector<ContactPatch> patches, std::size_t count,
+                                     const Result& whole, double stiffness, const ToolModel& tool);
+
+}  // namespace vpm
