@@ -230,6 +230,8 @@ COMMANDS = [
      f"{TOOL} --tool single.vpmg --poses poses.txt"),
     (f"{TOOL} --poses poses.txt --coherent --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --coherent", WALL),
+    (f"{TOOL} --poses poses.txt --contacts --measure paper", "leave the other measure or device out",
+     f"{TOOL} --poses poses.txt --contacts", WALL),
     (f"{TOOL} --poses poses.txt --shadows solid --measure paper", "leave the other measure out",
      f"{TOOL} --poses poses.txt --shadows solid", WALL),
     (f"{TOOL} --poses poses.txt --reuse 0.001", r"is gone: leave it out; a coarser (--level)",

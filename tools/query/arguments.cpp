@@ -99,13 +99,6 @@ void declare_assembly(CLI::App& app, Arguments& a) {
                  "assembly (.json). All pairs of parts are measured, and those that share volume "
                  "are told")
       ->option_text("FOLDER");
-  app.add_option("--contacts", a.contacts,
-                 "Each pair of --pairs also lists its contacts, connected patches of what is "
-                 "shared: the largest N, 16 if no number follows, and the rest in one")
-      ->expected(0, 1)
-      ->default_str("16")
-      ->check(whole_number_in(1, 1 << 20))
-      ->option_text("[N]");
   app.add_option("--unit", a.unit,
                  "Unit of the meshes, poses and results of --pairs: m, cm, mm, um, in or ft")
       ->check(CLI::IsMember(names_of_units()))
@@ -246,6 +239,15 @@ void declare_outputs(CLI::App& app, Arguments& a) {
       "--bodies", a.bodies,
       "Each line also lists what each body of the scene gives: cloud, or what several cameras see, "
       "first, then solids");
+  app.add_option(
+         "--contacts", a.contacts,
+         "Each line also lists its contacts, connected patches of what the tool shares with "
+         "a body, or the parts of a pair with each other: the largest N, 16 if no number "
+         "follows, and the rest in one")
+      ->expected(0, 1)
+      ->default_str("16")
+      ->check(whole_number_in(1, 1 << 20))
+      ->option_text("[N]");
   app.add_flag("--resume", a.resume,
                "Go on after the lines that an interrupted run with the same options left beside "
                "--output");

@@ -32,7 +32,7 @@ struct Arguments {
   std::vector<std::string> tools;
   std::vector<std::string> solids;   // each FILE or FILE@POSE
   std::string pairs, unit, repair;   // of an assembly
-  std::size_t contacts = 0;          // of each pair; 0: none are told
+  std::size_t contacts = 0;          // of each pose or pair; 0: none are told
   std::optional<double> fail_above;  // m^3; of an assembly in the cube of its unit
   std::vector<std::string> clouds;   // one, or depth images of several cameras
   std::string pose;

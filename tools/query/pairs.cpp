@@ -13,6 +13,7 @@
 #include "tools/common/length_units.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/common/repair_option.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/pairs_assembly.h"
 #include "tools/query/pairs_parts.h"
 #include "tools/query/result_output.h"
@@ -45,22 +46,6 @@ SolidOptions solid_options_of(const Arguments& a, const Assembly& assembly, doub
   return options;
 }
 
-// Returns what a line tells of contacts, in a unit of so many metres. Volumes and areas are those
-// of the API divided once, so that they add up as closely as quotients can.
-nlohmann::ordered_json contacts_of(const Overlap& overlap, double metres) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Contact& c : overlap.contacts) {
-    const auto [x, y, z] = c.centroid;
-    list.push_back({{"volume", c.volume / (metres * metres * metres)},
-                    {"centroid", {x / metres, y / metres, z / metres}},
-                    {"normal", {c.normal.x, c.normal.y, c.normal.z}},
-                    {"area", c.area / (metres * metres)},
-                    {"depth", c.depth / metres},
-                    {"patches", c.patches}});
-  }
-  return list;
-}
-
 // An assembly whose pairs are told, in its unit.
 class PairLines {
  public:
@@ -80,7 +65,7 @@ class PairLines {
                                 {"centroid", {x / metres, y / metres, z / metres}},
                                 {"closure", pair.overlap.closure}};
     const AllowedPair* const rule = assembly_.rule_for(a, b);
-    if (arguments_.contacts > 0) line["contacts"] = contacts_of(pair.overlap, metres);
+    if (arguments_.contacts > 0) line["contacts"] = contacts_of_pair(pair.overlap.contacts, metres);
     if (rule != nullptr && rule->volume) line["allowed"] = *rule->volume;
     if (rule != nullptr && !rule->volume) line["allowed"] = "any";
     if (arguments_.fail_above) line["above"] = is_above(line, rule, smaller);

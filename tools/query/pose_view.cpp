@@ -24,7 +24,8 @@ constexpr std::size_t kMostFrames = 24, kFramePixels = 1'000'000;
 constexpr std::uint8_t kUnused = 3;
 
 constexpr std::array<const char*, 4> kToolColors{"#b08d57", "#6b8e23", "#8968a8", "#4f8a8b"};
-constexpr const char *kForceColor = "#009e73", *kTorqueColor = "#aa4499", *kPathColor = "#0072b2";
+constexpr const char *kForceColor = "#009e73", *kTorqueColor = "#aa4499", *kPathColor = "#0072b2",
+                     *kContactColor = "#d55e00";
 
 std::string maker_of(const nlohmann::json& provenance) {
   if (!provenance.is_object()) return "";
@@ -82,7 +83,8 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
 
 void PoseView::add(const Job& job, const Result& result, const LevelQuery& query) {
   const std::size_t tool = job.tool;
-  Answer answer{job.pose, result, {}};
+  Answer answer{job.pose, result, {}, {}};
+  if (options_.contacts > 0) answer.contacts = query.contacts(tool);
   for (const SphereState state : query.states(tool))
     answer.states.push_back(static_cast<std::uint8_t>(state));
   levels_[tool] = std::max(levels_[tool], query.level(tool));
@@ -262,6 +264,25 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   return volume_column;
 }
 
+// Adds the contacts of each step: their number, and a line from each centroid against the normal,
+// as long as the contact is deep.
+void PoseView::add_contacts(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+                            std::size_t body) const {
+  view::Column numbers{"contacts", "", 1, {}, body};
+  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::vector<Contact>& contacts = steps[k].answers[tool].contacts;
+    numbers.values.push_back(static_cast<float>(contacts.size()));
+    if (contacts.empty()) continue;
+    view::LinesView lines{.name = "contacts" + of, .color = kContactColor, .ends = {}};
+    for (const Contact& c : contacts)
+      lines.ends.insert(lines.ends.end(), {c.centroid, c.centroid - c.depth * c.normal});
+    lines.count = contacts.size(), lines.marks = lines.above = true, lines.step = k;
+    page.add_lines(lines);
+  }
+  page.add_column(numbers);
+}
+
 // True if the poses follow each other: as steps in time do, and others by where they lie.
 bool PoseView::are_path(const std::vector<Step>& steps) const {
   if (recording_ != nullptr || options_.coherent) return true;
@@ -298,7 +319,9 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
   if (steps.size() > 1)
     page.add_path((is_joined ? "path of the tool" : "poses of the tool") + of, kPathColor, body,
                   is_joined);
-  return add_numbers(page, steps, tool, body);
+  const std::size_t volume = add_numbers(page, steps, tool, body);
+  if (options_.contacts > 0) add_contacts(page, steps, tool, body);
+  return volume;
 }
 
 // Adds notes on a tool that no camera sees, and on poses at which nothing is touched.

@@ -56,6 +56,7 @@ class PoseView {
     Pose pose;
     Result result;
     std::vector<std::uint8_t> states;
+    std::vector<Contact> contacts;  // if they are asked for
   };
   struct Step {
     std::size_t index = 0;
@@ -77,6 +78,8 @@ class PoseView {
                        bool is_joined) const;
   std::size_t add_numbers(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
                           std::size_t body) const;
+  void add_contacts(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+                    std::size_t body) const;
   std::string title() const;
   void say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
                        const std::vector<Camera>& frame_cameras) const;

@@ -6,6 +6,7 @@
 
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
 #include "tools/query/pose_spread.h"
 #include "tools/query/query_report.h"
@@ -96,6 +97,8 @@ class PoseQueries {
                                       setup_.options.measure, query.reason(), {}),
                           query.seconds()};
     if (setup_.arguments.bodies) answered.line["bodies"] = bodies_of(query.parts());
+    if (setup_.arguments.contacts > 0)
+      answered.line["contacts"] = contacts_of_pose(query.contacts());
     return answered;
   }
   void write(AnsweredPose answered) {
@@ -137,7 +140,8 @@ bool ask_all(const QuerySetup& setup, PoseSource& source, PoseQueries& queries) 
     queries.ask_by_threads(source, threads);
     return false;
   }
-  const bool together = a.batch > 1 && !a.bodies;  // a batch leaves no parts of bodies
+  // A batch leaves no parts of bodies, and no contacts.
+  const bool together = a.batch > 1 && !a.bodies && a.contacts == 0;
   const std::size_t most = together ? a.batch : 1;
   for (auto poses = source.next(most); !poses.empty(); poses = source.next(most))
     together ? queries.ask_together(poses) : queries.ask(poses.front());

@@ -35,11 +35,12 @@ std::vector<Tool> read_tools(const Program& program, const std::vector<std::stri
   return tools;
 }
 
-// Returns the CPU for what no device computes (coherent poses, the measure as printed, solids),
+// Returns the CPU for what no device computes (coherent poses, the measure as printed, solids,
+// contacts),
 // unless a device is named.
 Device device_of(const Program& program, const Arguments& a) {
   const bool has_solids_only = !a.solids.empty() && a.clouds.empty();
-  const bool is_on_cpu = a.coherent || a.measure == "paper" || has_solids_only;
+  const bool is_on_cpu = a.coherent || a.measure == "paper" || a.contacts > 0 || has_solids_only;
   return is_on_cpu && program.common().device == "auto" ? Device{} : program.device();
 }
 
@@ -50,6 +51,7 @@ QueryOptions query_options(const Program& program, const Arguments& a) {
   options.stiffness = a.stiffness.value_or(1);
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
+  options.contacts = static_cast<std::uint32_t>(a.contacts);
   options.device = device_of(program, a);
   return options;
 }

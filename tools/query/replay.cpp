@@ -22,6 +22,7 @@
 #include "libvpm/setup/size_check.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/arguments.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/coupling.h"
 #include "tools/query/frame_removal.h"
 #include "tools/query/mode.h"
@@ -108,6 +109,7 @@ class Replay {
   Device device_;
   Denoising points_;
   std::vector<Body> solids_;
+  bool tells_contacts_;
   ScheduleOptions schedule_;
   std::optional<AnyBody> first_body_;
   std::optional<Scene> scene_;  // the frame that the loop sees
@@ -142,7 +144,8 @@ Replay::Replay(const QuerySetup& setup, double rate)
       import_(import_options(program_, arguments_.import)),
       device_(setup.options.device),
       points_(setup.points),
-      solids_(setup.solids) {
+      solids_(setup.solids),
+      tells_contacts_(setup.arguments.contacts > 0) {
   recording_ =
       open_recording(program_, arguments_.frames, recording_options(arguments_, import_), import_);
   note_recording(program_, arguments_.frames, recording_, import_);
@@ -265,6 +268,7 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
         are_coupled ? coupled_line(step, frame_name())
                     : result_line(step.step, {}, step.contact, query.level(tool), measure,
                                   query.reason(tool), StepOfReplay{step.time, frame_name()}, told);
+    if (tells_contacts_) line["contacts"] = contacts_of_pose(query.contacts(tool));
     collisions.answer(step.contact, line);
     output.append(line);
   }

@@ -41,6 +41,7 @@ constexpr CsvColumn kResult[] = {
     {"bodies", "/bodies"},
     {"collides", "/collides"},
     {"above", "/above"},
+    {"contacts", "/contacts"},
 };
 
 constexpr CsvColumn kCoupling[] = {

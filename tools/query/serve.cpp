@@ -20,6 +20,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
@@ -150,6 +151,7 @@ class Server {
     seconds_.push_back(query_->seconds());
     Line line = result_line(seconds_.size() - 1, id, result, query_->level(),
                             setup_.options.measure, query_->reason(), {});
+    if (setup_.arguments.contacts > 0) line["contacts"] = contacts_of_pose(query_->contacts());
     setup_.collisions.answer(result, line);
     return line;
   }

@@ -5,6 +5,7 @@
 
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
@@ -27,6 +28,7 @@ class SeveralTools {
 
   // Writes a line for each pose and tool: pose by pose, in the order of the tools.
   void ask(const std::vector<AskedPose>& asked, ResultOutput& output) {
+    contacts_.clear();
     const std::vector<Result> results = timed_results(asked);
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools_;
@@ -34,6 +36,7 @@ class SeveralTools {
       nlohmann::ordered_json line =
           result_line(poses_asked_ + k / tools_, asked[k / tools_].id, results[k],
                       query_.level(tool), setup_.options.measure, query_.reason(tool), {}, tool);
+      if (!contacts_.empty()) line["contacts"] = contacts_of_pose(contacts_[k]);
       setup_.collisions.answer(results[k], line);
       output.append(line);
     }
@@ -54,9 +57,13 @@ class SeveralTools {
       for (std::uint32_t t = 0; t < tools_; ++t) jobs.push_back({one.pose, t, one.solids});
     std::vector<Result> results(jobs.size());
     const auto start = std::chrono::steady_clock::now();
-    if (asked.size() == 1) {  // the whole device answers each sooner
-      for (std::size_t t = 0; t < tools_; ++t)
-        results[t] = query_.run(scene_.scene(), asked.front().pose, t, asked.front().solids);
+    const bool tells_contacts = setup_.arguments.contacts > 0;  // which jobs leave none of
+    if (asked.size() == 1 || tells_contacts) {  // the whole device answers each sooner
+      for (std::size_t k = 0; k < jobs.size(); ++k) {
+        const auto& [pose, tool, solids] = jobs[k];
+        results[k] = query_.run(scene_.scene(), pose, tool, solids);
+        if (tells_contacts) contacts_.push_back(query_.contacts(tool));
+      }
     } else {
       query_.run(scene_.scene(), jobs, results);
     }
@@ -72,6 +79,7 @@ class SeveralTools {
   LevelQuery query_;
   std::size_t poses_asked_;
   std::vector<double> seconds_;
+  std::vector<std::vector<Contact>> contacts_;  // of each answer, if they are told
 };
 
 }  // namespace
