@@ -1,7 +1,10 @@
-// What two solids share: SolidBody, Overlap, OverlapQuery.
+// What two solids share: SolidBody, Contact, Overlap, OverlapQuery.
+#include <pybind11/stl.h>
 #include <vpm/solid.h>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "libvpm/python/arrays.h"
 #include "libvpm/python/locked.h"
@@ -36,6 +39,43 @@ void bind_body(py::module_& module) {
                              "Number of triangles that bound the solid.");
 }
 
+void bind_contact(py::module_& module) {
+  py::class_<Contact>(module, "Contact",
+                      "A connected patch of what two solids, or a tool and a body of a scene, "
+                      "share; in world axes. Contacts of an answer add up to it in bits.")
+      .def_property_readonly(
+          "body",
+          [](const Contact& contact) {
+            return contact.body == Contact::kSeveralBodies ? std::nullopt
+                                                           : std::optional(contact.body);
+          },
+          "Place of the body in the scene's list, 0 of two solids; None where the last contact "
+          "sums "
+          "those of several bodies.")
+      .def_readonly("volume", &Contact::volume, "Volume, m^3.")
+      .def_property_readonly(
+          "centroid", [](const Contact& contact) { return array_of(contact.centroid); },
+          "Array (3,): centroid of the volume, m.")
+      .def_property_readonly(
+          "normal", [](const Contact& contact) { return array_of(contact.normal); },
+          "Array (3,): mean normal, from the first solid or the tool into the other; 0 if it "
+          "cancels.")
+      .def_readonly("area", &Contact::area, "Area of the cut surface as seen along it, m^2.")
+      .def_readonly("depth", &Contact::depth, "Greatest depth, m.")
+      .def_property_readonly(
+          "force", [](const Contact& contact) { return array_of(contact.wrench.force); },
+          "Array (3,): what it adds to the force of the answer.")
+      .def_property_readonly(
+          "torque", [](const Contact& contact) { return array_of(contact.wrench.torque); },
+          "Array (3,): what it adds to the torque of the answer, about the same point.")
+      .def_readonly("patches", &Contact::patches,
+                    "Number of patches that it sums; more than 1 only in the last.")
+      .def("__repr__", [](const Contact& contact) {
+        return py::str("<vpm.Contact: {:.6g} m^3, {:.4g} m deep>")
+            .format(contact.volume, contact.depth);
+      });
+}
+
 void bind_answer(py::module_& module) {
   py::class_<Overlap>(module, "Overlap",
                       "What two solids a and b share, in world axes; b's vectors are the opposite.")
@@ -58,6 +98,8 @@ void bind_answer(py::module_& module) {
       .def_readonly("closure", &Overlap::closure,
                     "How far the shared boundary is from closed, relative to the smaller radius; "
                     "below 1e-8.")
+      .def_readonly("contacts", &Overlap::contacts,
+                    "List of vpm.Contact, largest first, if the query asks for them.")
       .def("__repr__", [](const Overlap& overlap) {
         return py::str("<vpm.Overlap: {:.6g} m^3>").format(overlap.volume);
       });
@@ -67,12 +109,15 @@ void bind_overlap_query(py::module_& module) {
   using LockedQuery = Locked<OverlapQuery>;
   py::class_<LockedQuery>(module, "OverlapQuery",
                           "Measures two solids at many poses. Threads that ask it take turns.")
-      .def(py::init([](const SolidBody& a, const SolidBody& b, bool with_force, double stiffness) {
-             return std::make_unique<LockedQuery>(a, b, OverlapOptions{with_force, stiffness});
+      .def(py::init([](const SolidBody& a, const SolidBody& b, bool with_force, double stiffness,
+                       std::uint32_t contacts) {
+             return std::make_unique<LockedQuery>(a, b,
+                                                  OverlapOptions{with_force, stiffness, contacts});
            }),
            py::arg("a"), py::arg("b"), py::kw_only(), py::arg("with_force") = true,
-           py::arg("stiffness") = 1.0,
+           py::arg("stiffness") = 1.0, py::arg("contacts") = 0,
            "with_force: False leaves force and torque 0 and takes less time. stiffness: N/m^3. "
+           "contacts: how many are listed each by itself, all others in one more; 0: none. "
            "Raises ArgumentError for forces of bodies made without.")
       .def(
           "run",
@@ -89,6 +134,7 @@ void bind_overlap_query(py::module_& module) {
 
 void bind_overlap(py::module_& module) {
   bind_body(module);
+  bind_contact(module);
   bind_answer(module);
   bind_overlap_query(module);
 }

@@ -23,13 +23,15 @@ Measure measure_of(const std::string& text) {
 }
 
 QueryOptions options_of(const std::string& measure, std::uint32_t level, const std::string& device,
-                        bool coherent, const std::string& shadows, double stiffness) {
+                        bool coherent, const std::string& shadows, double stiffness,
+                        std::uint32_t contacts) {
   return {measure_of(measure),
           level,
           device_from_text(device),
           coherent,
           choice<Shadows>(shadows, "shadows", {{"near", Shadows::near}, {"solid", Shadows::solid}}),
-          stiffness};
+          stiffness,
+          contacts};
 }
 
 std::vector<Tool> tools_of(const py::object& tools) {
@@ -223,16 +225,16 @@ void bind_single_query(py::module_& module) {
       "meanwhile. The same input gives the same bits on every device, for any number of threads.")
       .def(py::init([](const py::object& tools, const std::string& measure, std::uint32_t level,
                        const std::string& device, bool coherent, const std::string& shadows,
-                       double stiffness) {
+                       double stiffness, std::uint32_t contacts) {
              const std::vector<Tool> list = tools_of(tools);
              const QueryOptions options =
-                 options_of(measure, level, device, coherent, shadows, stiffness);
+                 options_of(measure, level, device, coherent, shadows, stiffness, contacts);
              const py::gil_scoped_release unlocked;
              return std::make_unique<LockedQuery>(list, options);
            }),
            py::arg("tools"), py::kw_only(), py::arg("measure") = "refined", py::arg("level") = 0,
            py::arg("device") = "cpu", py::arg("coherent") = false, py::arg("shadows") = "near",
-           py::arg("stiffness") = 1.0,
+           py::arg("stiffness") = 1.0, py::arg("contacts") = 0,
            "tools: a vpm.Tool, or a list of them.\nmeasure: \"refined\", or \"paper\", the "
            "algorithm as printed.\nlevel: number of spheres; 0: the finest level.\ndevice: "
            "\"cpu\", \"cuda\", \"cuda:1\", \"cuda:all\" or \"auto\".\ncoherent: the poses are "
@@ -241,7 +243,9 @@ void bind_single_query(py::module_& module) {
            "those "
            "that a surface which cuts the tool supports. solid: all of them.\nstiffness: N/m^3; "
            "with 1 force and torque are in m^3 and "
-           "m^4.\n\nRaises ArgumentError for options out of range or that exclude each other, "
+           "m^4.\ncontacts: how many contacts() lists each by itself, all others in one more; 0: "
+           "none. On the CPU only.\n\nRaises ArgumentError for options out of range or that "
+           "exclude each other, "
            "UnavailableError if the device is not there.")
       .def(
           "run",
@@ -263,6 +267,11 @@ void bind_single_query(py::module_& module) {
           [](LockedQuery& self) { return self.ask([](Query& query) { return query.parts(); }); },
           "Returns a list with the vpm.Result that each body gave at the last single pose, in the "
           "order of the scene's bodies. Their volumes, forces and torques add up to the answer.")
+      .def(
+          "contacts",
+          [](LockedQuery& self) { return self.ask([](Query& query) { return query.contacts(); }); },
+          "Returns a list of vpm.Contact, the largest first: those of the last single pose. Their "
+          "volumes, forces and torques add up to the answer, in bits.")
       .def(
           "run_batch",
           [](LockedQuery& self, const Scene& scene, const Numbers& poses, const py::object& tool,
@@ -330,9 +339,10 @@ void bind_level_query(py::module_& module) {
       .def(py::init([](const Tool& tool, const Scene& scene, const Numbers& first_pose,
                        std::optional<double> max_error, std::optional<double> deadline_seconds,
                        bool for_scene, const std::string& measure, const std::string& device,
-                       const std::string& shadows, double stiffness) {
+                       const std::string& shadows, double stiffness, std::uint32_t contacts) {
              const Pose pose = pose_of(first_pose);
-             const QueryOptions options = options_of(measure, 0, device, false, shadows, stiffness);
+             const QueryOptions options =
+                 options_of(measure, 0, device, false, shadows, stiffness, contacts);
              const LevelRequest request{max_error, deadline_seconds, for_scene};
              const py::gil_scoped_release unlocked;
              return std::make_unique<LockedQuery>(tool, options, request, scene, pose);
@@ -340,7 +350,7 @@ void bind_level_query(py::module_& module) {
            py::arg("tool"), py::arg("scene"), py::arg("first_pose"), py::kw_only(),
            py::arg("max_error") = py::none(), py::arg("deadline_seconds") = py::none(),
            py::arg("for_scene") = false, py::arg("measure") = "refined", py::arg("device") = "cpu",
-           py::arg("shadows") = "near", py::arg("stiffness") = 1.0,
+           py::arg("shadows") = "near", py::arg("stiffness") = 1.0, py::arg("contacts") = 0,
            "max_error: fraction of the tool's volume that the calibrated worst error may "
            "be.\ndeadline_seconds: time of each query; wins over the others.\nfor_scene: no "
            "spheres that the scene's points cannot resolve.\n\nRaises RefusedError if the tool has "
@@ -354,6 +364,10 @@ void bind_level_query(py::module_& module) {
           },
           py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
           "Returns the vpm.Result at the level of the moment. solids: as for vpm.Query.run.")
+      .def(
+          "contacts",
+          [](LockedQuery& self) { return self.ask([](auto& query) { return query.contacts(); }); },
+          "Returns the contacts of the last run, as vpm.Query.contacts().")
       .def_property_readonly(
           "level", [](LockedQuery& self) { return self.ask([](auto& q) { return q.level(); }); },
           "Number of spheres of the level last used.")

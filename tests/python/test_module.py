@@ -256,6 +256,29 @@ def test_solids_of_a_scene_move_and_add_up(tool, cloud):
     assert query.run(scene, pose, matrices_of(np.array(moved))).volume == query.run(scene, pose, moved).volume
 
 
+def test_contacts_add_up_and_say_where(tool, cloud):
+    scene = vpm.Scene([vpm.Body(cloud), vpm.Body(vpm.SolidBody(tool), [0.15, 0.02, 0.96, 0, 0, 0, 1])])
+    pose, query = [0, 0, 0.95, 0, 0, 0, 1], vpm.Query(tool, contacts=4, stiffness=2e4)
+    assert query.contacts() == []
+    whole = query.run(scene, pose)
+    wall, side = query.contacts()
+    assert (wall.body, side.body) == (0, 1) and wall.patches == side.patches == 1
+    assert wall.volume + side.volume == whole.volume and np.array_equal(wall.force + side.force, whole.force)
+    assert np.array_equal(wall.torque + side.torque, whole.torque)
+    assert side.centroid == pytest.approx([0.075, 0.01, 0.955], abs=1e-8) and 0 < side.depth < 0.051
+    assert side.area * side.normal == pytest.approx([0.18 * 0.19, 0.05 * 0.19, 0.05 * 0.18], abs=1e-9)
+    assert wall.normal == pytest.approx([0, 0, 1], abs=1e-3) and wall.depth == pytest.approx(0.05, abs=0.005)
+    few = vpm.Query(tool, contacts=1)
+    both = vpm.Scene(scene.bodies[1:] + [vpm.Body(vpm.SolidBody(tool), [-0.16, 0, 0.95, 0, 0, 0, 1])] + scene.bodies[:1])
+    few.run(both, pose)
+    assert [contact.patches for contact in few.contacts()] == [1, 2] and few.contacts()[1].body is None
+    body = vpm.SolidBody(tool)
+    overlap = vpm.overlap(body, pose, body, [0.15, 0, 0.95, 0, 0, 0, 1], contacts=3)
+    assert [contact.volume for contact in overlap.contacts] == [overlap.volume]
+    level = vpm.LevelQuery(tool, scene, pose, contacts=4, stiffness=2e4)
+    assert level.run(scene, pose).volume == sum(contact.volume for contact in level.contacts())
+
+
 def test_each_job_has_poses_of_its_solids(tool, cloud):
     scene, query = vpm.Scene([vpm.Body(vpm.SolidBody(tool)), vpm.Body(cloud)]), vpm.Query(tool)
     poses = poses_into_the_wall(5)

@@ -8,7 +8,7 @@ PAGE = pathlib.Path(os.environ["VPM_SOURCE"]) / "libvpm/python/README.md"
 
 def test_the_page_runs():
     blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.MULTILINE | re.DOTALL)
-    assert len(blocks) == 7
+    assert len(blocks) == 8
     namespace = {}
     for number, block in enumerate(blocks):
         exec(compile(block, f"{PAGE}, block {number + 1}", "exec"), namespace)

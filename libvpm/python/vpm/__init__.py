@@ -16,6 +16,7 @@ from . import _vpm
 from ._errors import ArgumentError, Error, RefusedError, SetupWarning, UnavailableError, WriteError
 from ._vpm import (
     Body,
+    Contact,
     DepthStream,
     LevelQuery,
     Overlap,
@@ -45,7 +46,7 @@ from ._vpm import (
 )
 
 __all__ = [
-    "ArgumentError", "Body", "DepthStream", "Error", "LevelQuery", "Overlap", "OverlapQuery", "PointCloud", "Query",
+    "ArgumentError", "Body", "Contact", "DepthStream", "Error", "LevelQuery", "Overlap", "OverlapQuery", "PointCloud", "Query",
     "RefusedError", "Remark", "Result", "Results", "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh",
     "SpherePacking", "Tool", "ToolLevel",
     "UnavailableError", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
@@ -96,11 +97,11 @@ def make_tool(mesh, *, spheres=1000, levels=(), calibrate=False, progress=None, 
     return build_tool(packing, levels=list(levels), calibrate=calibrate, progress=progress)
 
 
-def overlap(a, pose_a, b, pose_b, *, with_force=True, stiffness=1.0):
+def overlap(a, pose_a, b, pose_b, *, with_force=True, stiffness=1.0, contacts=0):
     """Returns the vpm.Overlap of two solids at a pose each: vpm.SolidBody, or what solid_of() takes.
 
     Exact for closed meshes: flush faces share nothing, thin, coincident and enclosed solids are right. Keep an
     OverlapQuery of two SolidBody for many poses: preparing them takes longer than asking."""
     bodies = (solid if isinstance(solid, SolidBody) else SolidBody(solid_of(solid), with_force=with_force)
               for solid in (a, b))
-    return OverlapQuery(*bodies, with_force=with_force, stiffness=stiffness).run(pose_a, pose_b)
+    return OverlapQuery(*bodies, with_force=with_force, stiffness=stiffness, contacts=contacts).run(pose_a, pose_b)
