@@ -43,9 +43,9 @@ class VPM_API Query {
 
   // Returns the answer for the first tool at `pose` (tool to world coordinates). A rotation that is
   // off by rounding (1e-5) is taken for the nearest one. Allocates nothing after the first call on
-  // a scene with one thread. Throws Error(refused) for a pose that is not finite, not rigid or
-  // further than 2^100 m from the origin, and for solid shadows of points without a camera;
-  // Error(unavailable) if the device fails.
+  // a scene with one thread, unless contacts are asked for. Throws Error(refused) for a pose that
+  // is not finite, not rigid or further than 2^100 m from the origin, and for solid shadows of
+  // points without a camera; Error(unavailable) if the device fails.
   //
   // Solids of the scene are measured by the tool's surface and theirs, whatever the level, on the
   // CPU; `solids` moves them, as Job::solids does. The first call then prepares the tool's surface
