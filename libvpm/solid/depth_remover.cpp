@@ -30,6 +30,11 @@ constexpr double kUnmeasured = 0.1, kLargePart = 8;
 struct RowCounts {
   std::uint32_t in_view = 0, hidden = 0, explained = 0;
 };
+void count(const RowCounts& row, RemovedSolid& found) {
+  found.in_view += row.in_view;
+  found.hidden += row.hidden;
+  found.explained += row.explained;
+}
 
 // Returns the depth from which on a surface at most `margin` nearer than `range` explains.
 [[gnu::always_inline]] inline float limit_of(const DrawnRange& range, float margin) {
@@ -191,13 +196,13 @@ void DepthRemover::remove_solid(std::size_t k, const Pose& to_camera, double mar
   if (seen.is_empty()) return;
   changed_ = united(changed_, seen);
   image_.draw(seen.grown(across, down));
-  take_silhouette(seen, margin, depth, found);
+  take_rows(seen, margin, depth, [&](auto... row) { count(take_silhouette_row(row...), found); });
   if (margin == 0) return;
   // Places further away need fewer pixels: each step takes those that need more than half as many.
   const bool is_one = high <= kOneStep * image_.least_inverse();
   if (is_one && high == image_.greatest_inverse()) {
     image_.widen(across, down);
-    return take_range(seen, margin, depth);
+    return take_rows(seen, margin, depth, take_range_row);
   }
   const SolidImage drawn = image_;
   for (float above = high; above >= image_.least_inverse(); above /= 2) {
@@ -205,30 +210,18 @@ void DepthRemover::remove_solid(std::size_t k, const Pose& to_camera, double mar
     // What is nearer than the nearest step hides places in the same pixels that are not.
     if (!image_.keep(above / 2, above == high ? kNever : above)) continue;
     image_.widen(pixels_at(spread.across, above), pixels_at(spread.down, above));
-    take_range(seen, margin, depth);
+    take_rows(seen, margin, depth, take_range_row);
   }
 }
 
-void DepthRemover::take_silhouette(const PixelWindow& seen, double margin,
-                                   std::span<const float> depth, RemovedSolid& found) {
+template <class TakeRow>
+void DepthRemover::take_rows(const PixelWindow& seen, double margin, std::span<float> depth,
+                             const TakeRow& take_row) {
   for (int v = seen.v0; v < seen.v1; ++v) {
     const std::size_t at = static_cast<std::size_t>(v) * static_cast<std::size_t>(whole_.u1) +
                            static_cast<std::size_t>(seen.u0);
-    const RowCounts counts =
-        take_silhouette_row(image_.row(v) + (seen.u0 - image_.window().u0), seen.width(),
-                            static_cast<float>(margin), depth.data() + at, limits_.data() + at);
-    found.in_view += counts.in_view;
-    found.hidden += counts.hidden;
-    found.explained += counts.explained;
-  }
-}
-
-void DepthRemover::take_range(const PixelWindow& seen, double margin, std::span<float> depth) {
-  for (int v = seen.v0; v < seen.v1; ++v) {
-    const std::size_t at = static_cast<std::size_t>(v) * static_cast<std::size_t>(whole_.u1) +
-                           static_cast<std::size_t>(seen.u0);
-    take_range_row(image_.row(v) + (seen.u0 - image_.window().u0), seen.width(),
-                   static_cast<float>(margin), depth.data() + at, limits_.data() + at);
+    take_row(image_.row(v) + (seen.u0 - image_.window().u0), seen.width(),
+             static_cast<float>(margin), depth.data() + at, limits_.data() + at);
   }
 }
 

@@ -45,9 +45,10 @@ class DepthRemover {
  private:
   void remove_solid(std::size_t k, const Pose& to_camera, double margin, const Camera& camera,
                     std::span<float> depth);
-  void take_silhouette(const PixelWindow& seen, double margin, std::span<const float> depth,
-                       RemovedSolid& found);
-  void take_range(const PixelWindow& seen, double margin, std::span<float> depth);
+  // Calls take_row(ranges, count, margin, depth, limits) for each row of a window.
+  template <class TakeRow>
+  void take_rows(const PixelWindow& seen, double margin, std::span<float> depth,
+                 const TakeRow& take_row);
   void take_nearer(double depth_limit, std::span<const float> depth);
   std::size_t mark(std::span<float> depth);
   bool is_alone(int u, int v, std::span<const float> depth) const;
