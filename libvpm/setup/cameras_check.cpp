@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/median.h"
@@ -31,6 +32,10 @@ struct ComparedCamera {
 struct Shared {
   int same = 0;          // both show the surface there
   int seen_through = 0;  // one shows a surface where the other saw free space
+  int hidden = 0;        // one shows a surface well behind what the other shows
+  void add(const Shared& other) {
+    same += other.same, seen_through += other.seen_through, hidden += other.hidden;
+  }
   double doubt() const {
     const int both = same + seen_through;
     return both >= kFew ? static_cast<double>(seen_through) / both : 0;
@@ -61,6 +66,7 @@ void add_shared(const ComparedCamera& shows, const ComparedCamera& other, Shared
     const SurfaceSample seen = other.image.sample(at);
     if (!seen.known) continue;
     shared.same += std::fabs(seen.distance) < reach;
+    shared.hidden += seen.distance <= -reach;
     if (seen.distance < reach) continue;
     // Beside what the other camera sees its pose, or this one's, may be wrong by little.
     const DepthSurface::BallClass around = other.image.classify_ball(at, kBeside * reach);
@@ -95,6 +101,46 @@ double depths_apart(const std::vector<ComparedCamera>& cameras, std::size_t own)
     least = std::min(least, norm(way) / depth);
   }
   return least;
+}
+
+Remark nothing_in_common(bool is_warning) {
+  return {is_warning,
+          "it shows no surface that another camera shows too: if they see one thing, is its "
+          "`import_cloud` `camera_pose` from camera to world, in metres, and `depth_scale` right?"};
+}
+
+bool has_no_pose(const Pose& pose) {
+  const Pose none;
+  const Rotation &own = pose.rotation, &other = none.rotation;
+  return pose.translation == none.translation && own.row0 == other.row0 && own.row1 == other.row1 &&
+         own.row2 == other.row2;
+}
+
+// Returns a camera that shows no surface which another one shows, too. Of several, one without a
+// pose, or that which sees least far: what is too near hides what others show. Two cameras that
+// look at a thing from opposite sides hide from each other what they show; that is nothing to be
+// said.
+std::optional<DoubtedCamera> lone_camera(const std::vector<ComparedCamera>& cameras,
+                                         const std::vector<Shared>& pairs) {
+  const std::size_t count = cameras.size();
+  bool do_others_share = false;  // but for an image that is given twice
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    do_others_share |= pairs[k].same >= kFew && cameras[k / count].to_world.translation !=
+                                                    cameras[k % count].to_world.translation;
+  std::optional<DoubtedCamera> found;
+  std::pair<bool, double> least;
+  for (std::size_t i = 0; count > 1 && i < count; ++i) {
+    Shared all;
+    for (std::size_t j = 0; j < count; ++j) all.add(pairs[i * count + j]);
+    const bool is_hidden = all.hidden >= kFew;
+    const std::pair key(!has_no_pose(cameras[i].to_world), cameras[i].depth);
+    if (!(cameras[i].depth > 0) || all.same >= kFew || (is_hidden && !do_others_share) ||
+        (found && least <= key))
+      continue;
+    least = key;
+    found = DoubtedCamera{i, nothing_in_common(!key.first && !is_hidden)};
+  }
+  return found;
 }
 
 Remark contradiction(double doubt) {
@@ -152,7 +198,8 @@ std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images) {
     if (is_more) most = sum, of_pair = worst, most_doubted = i;
   }
   if (of_pair >= kDoubtful) return DoubtedCamera{most_doubted, contradiction(of_pair)};
-  return far_camera(cameras);
+  if (const std::optional<DoubtedCamera> far = far_camera(cameras)) return far;
+  return lone_camera(cameras, pairs);
 }
 
 }  // namespace vpm

@@ -11,8 +11,9 @@
 
 namespace vpm {
 
-// Compares each image with each other one. Returns the camera that contradicts others most, or one
-// that shares nothing with them; nothing where they can be as they are told, or there is one only.
+// Compares each image with each other one. Returns the camera that contradicts others most, else
+// one that is far from them, else one that shows nothing that they show; nothing where they can be
+// as they are told, or there is one only.
 std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images);
 
 }  // namespace vpm

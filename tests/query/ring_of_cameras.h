@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "libvpm/cloud/normals.h"
@@ -30,6 +31,16 @@ inline std::vector<Camera> ring_of_cameras(int count) {
     cameras.push_back(camera);
   }
   return cameras;
+}
+
+// Returns a camera of the same view with fewer pixels, each as large as so many of its own.
+inline Camera with_larger_pixels(Camera camera, std::uint32_t across, std::uint32_t down) {
+  const auto larger = [](std::uint32_t by, std::uint32_t& size, double& f, double& c) {
+    size /= by, f /= by, c = (c + 0.5) / by - 0.5;
+  };
+  larger(across, camera.width, camera.intrinsics.fx, camera.intrinsics.cx);
+  larger(down, camera.height, camera.intrinsics.fy, camera.intrinsics.cy);
+  return camera;
 }
 
 inline std::vector<DepthBody> images_of(const synthetic::Surface& surface,

@@ -24,11 +24,7 @@ const synthetic::SurfacePtr& box_on_floor() {
 
 std::vector<Camera> small_cameras(int count) {
   std::vector<Camera> cameras = ring_of_cameras(count);
-  for (Camera& camera : cameras) {
-    Intrinsics& k = camera.intrinsics;
-    camera.width /= 4, camera.height /= 4;
-    k.fx /= 4, k.fy /= 4, k.cx = (k.cx - 1.5) / 4, k.cy = (k.cy - 1.5) / 4;
-  }
+  for (Camera& camera : cameras) camera = testing::with_larger_pixels(camera, 4, 4);
   return cameras;
 }
 
@@ -72,17 +68,33 @@ TEST(CamerasCheck, SaysNothingOfCamerasThatAgree) {
   }
 }
 
-TEST(CamerasCheck, SaysNothingOfCamerasThatShareNothing) {
+// Cameras that share nothing may be as they are told: that is a note, but for one without a pose.
+TEST(CamerasCheck, SaysThatCamerasShareNothing) {
   const auto wall = [](double x) {
     Camera camera = small_cameras(1).front();
     camera.to_world = Pose{{}, {x, 0, 0}};
     const synthetic::SurfacePtr surface = synthetic::make_wall({0, 0, 1}, {0, 0, -1});
     return images_of(*surface, {camera}).front();
   };
-  const std::vector<DepthBody> apart{wall(0), wall(10)};
-  EXPECT_FALSE(check_cameras(apart));
-  const std::vector<DepthBody> far_apart{wall(0), wall(1000)};
-  EXPECT_TRUE(check_cameras(far_apart));
+  const auto said_of_walls = [&](double x, double other) {
+    return check_cameras(std::vector<DepthBody>{wall(x), wall(other)});
+  };
+  EXPECT_FALSE(said_of_walls(5, 5.2));
+  ASSERT_TRUE(said_of_walls(5, 15));
+  EXPECT_FALSE(said_of_walls(5, 15)->remark.is_warning);
+  ASSERT_TRUE(said_of_walls(10, 0));
+  EXPECT_EQ(said_of_walls(10, 0)->camera, 1);
+  EXPECT_TRUE(said_of_walls(10, 0)->remark.is_warning);
+  EXPECT_TRUE(said_of_walls(0, 1000)->remark.is_warning);  // far apart
+}
+
+// Depths that are too small put what a camera shows near it, where no other one sees anything.
+TEST(CamerasCheck, NamesACameraWhoseDepthsAreTooSmall) {
+  for (const int count : {3, 4}) {
+    const std::optional<DoubtedCamera> said = said_of(count, 1, 0.2, as_it_is);
+    ASSERT_TRUE(said) << count;
+    EXPECT_EQ(said->camera, 1) << count << said->remark.text;
+  }
 }
 
 TEST(CamerasCheck, FindsTheOneThatIsElsewhere) {
@@ -90,7 +102,8 @@ TEST(CamerasCheck, FindsTheOneThatIsElsewhere) {
     double scale;
     Pose (*told)(const Pose&);
   };
-  for (const Wrong& wrong : {Wrong{1000, as_it_is}, Wrong{2, as_it_is}, Wrong{1, in_millimetres}}) {
+  for (const Wrong& wrong :
+       {Wrong{1000, as_it_is}, Wrong{5, as_it_is}, Wrong{2, as_it_is}, Wrong{1, in_millimetres}}) {
     for (const std::size_t camera : {0, 1, 2}) {
       const std::optional<DoubtedCamera> said = said_of(3, camera, wrong.scale, wrong.told);
       ASSERT_TRUE(said) << camera << ' ' << wrong.scale;

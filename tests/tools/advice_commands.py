@@ -36,7 +36,9 @@ COMMANDS = [
     *[(f"vpm-normals wall.pgm {CAMERA} {wrong} -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt", advice,
        f"vpm-normals wall.pgm {CAMERA} {right} -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt", WALL)
       for wrong, right, advice in (("--depth-scale 500", "--depth-scale 1000", "from camera to world, in metres, and vpm-normals (--depth-scale) right"),
-                                   ("--camera-pose 3000,0,0,0,0,0,1", "--camera-pose 0,0,0,0,0,0,1", "is its vpm-normals --camera-pose in metres"))],
+                                   ("--camera-pose 3000,0,0,0,0,0,1", "--camera-pose 0,0,0,0,0,0,1", "is its vpm-normals --camera-pose in metres"),
+                                   ("--camera-pose 10,0,0,0,0,0,1", "--camera-pose 0,0,0,0,0,0,1",
+                                    "shows no surface that another camera shows too: if they see one thing, is its vpm-normals --camera-pose from camera to world"))],
     (f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 17) --poses poses.txt", "leave out those that show least",
      f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 3) --poses poses.txt"),
     # Outputs

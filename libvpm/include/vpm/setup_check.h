@@ -72,8 +72,11 @@ struct DoubtedCamera {
 // surface to one, and free to the other by more than 3 % of the depth. A pose that is missing,
 // inverse or in millimetres and depths in another unit cause that; so may a thing that moved.
 // Otherwise returns a camera that is more than 30 times as far from each other one as they see;
-// nothing where there is none. Takes a core 20 ms for four images. Thread-safe. Throws
-// Error(invalid_argument) for a body that is no depth image.
+// else one that shows no surface which another shows too: with a warning if its pose is the
+// identity, as one that was left out, and it hides nothing that others show; else with a note, or
+// nothing for two cameras of which one hides what the other shows, as from opposite sides of a
+// thing. Returns nothing where there is none. Takes a core 20 ms for four images. Thread-safe.
+// Throws Error(invalid_argument) for a body that is no depth image.
 VPM_API std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images);
 
 }  // namespace vpm
