@@ -85,10 +85,9 @@ std::vector<DepthBody> depth_images_of(std::span<const Body> bodies) {
 }
 
 Body Body::of_cameras(std::span<const Body> images) {
-  const RigBody rig(depth_images_of(images));
-  const std::vector<DepthBody>& different = rig.prepared().images();
+  std::vector<DepthBody> different = different_images(depth_images_of(images));
   return HandleAccess::make<Body>(different.size() == 1 ? AnyBody(different.front())
-                                                        : AnyBody(rig));
+                                                        : AnyBody(RigBody(std::move(different))));
 }
 
 std::size_t Body::points() const {

@@ -1,6 +1,8 @@
 #include "libvpm/scene/rig/prepared_rig.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -29,7 +31,9 @@ int compare_pixels(const PreparedImage& a, const PreparedImage& b) {
   for (std::int32_t i = 0; i < pixels; ++i) {
     const auto key = [i](const DepthSurface& image) {
       const Vec3f n = image.normals[i];
-      return std::tuple(image.measured[i], image.tiles[0][i].high, n.x, n.y, n.z);
+      // A removed pixel, -0, is another one than a hole.
+      return std::tuple(std::bit_cast<std::uint32_t>(image.measured[i]), image.tiles[0][i].high,
+                        n.x, n.y, n.z);
     };
     if (key(one) < key(other)) return -1;
     if (key(other) < key(one)) return 1;
@@ -44,9 +48,19 @@ int compare(const DepthBody& a, const DepthBody& b) {
 
 }  // namespace
 
-PreparedRig::PreparedRig(std::vector<DepthBody> images) : images_(std::move(images)) {
+std::vector<DepthBody> different_images(std::vector<DepthBody> images) {
+  std::sort(images.begin(), images.end(),
+            [](const DepthBody& a, const DepthBody& b) { return compare(a, b) < 0; });
+  images.erase(
+      std::unique(images.begin(), images.end(),
+                  [](const DepthBody& a, const DepthBody& b) { return compare(a, b) == 0; }),
+      images.end());
+  return images;
+}
+
+PreparedRig::PreparedRig(std::vector<DepthBody> images)
+    : images_(different_images(std::move(images))) {
   if (images_.empty()) throw Error(ErrorKind::invalid_argument, "a rig needs a camera");
-  order_images();
   constexpr auto kMost = static_cast<std::size_t>(RigSurface::kMostCameras);
   if (images_.size() > kMost)
     throw Error(ErrorKind::invalid_argument,
@@ -60,15 +74,6 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images) : images_(std::move(imag
   });
   place_cameras();
   agreement_ = agreement_of(cameras_);
-}
-
-void PreparedRig::order_images() {
-  std::sort(images_.begin(), images_.end(),
-            [](const DepthBody& a, const DepthBody& b) { return compare(a, b) < 0; });
-  images_.erase(
-      std::unique(images_.begin(), images_.end(),
-                  [](const DepthBody& a, const DepthBody& b) { return compare(a, b) == 0; }),
-      images_.end());
 }
 
 void PreparedRig::place_cameras() {

@@ -14,6 +14,9 @@
 
 namespace vpm {
 
+// Returns images in an order that depends on them alone, each once.
+std::vector<DepthBody> different_images(std::vector<DepthBody> images);
+
 class PreparedRig {
  public:
   // Takes images in any order; one that is given twice counts once. Takes a core 30 ms for four
@@ -61,7 +64,6 @@ class PreparedRig {
     std::vector<Vec3f> positions, normals;
   };
 
-  void order_images();
   void place_cameras();
   // Returns the points of all images. The first call makes the list, for few queries read it.
   const Points& points() const;
