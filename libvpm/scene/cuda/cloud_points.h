@@ -151,8 +151,8 @@ class TileWork {
       if (is_point) turned_back = narrow(to_camera * widen(narrow(to_world * widen(normal))));
       if (tile_.holds(x, y)) {
         const float measured = arrays_.measured[k];
-        seen[tile_.pixel(x, y)] = {turned_back.x, turned_back.y, turned_back.z, measured};
-        image[tile_.pixel(x, y)] = measured;
+        seen[tile_.pixel(x, y)] = {turned_back.x, turned_back.y, turned_back.z, measured + 0.0F};
+        image[tile_.pixel(x, y)] = measured;  // keeps the -0 of one that was removed
       }
       add_up(is_point && is_doubtful(normal), doubtful);
       add_up(is_point, points);
@@ -202,7 +202,7 @@ class TileWork {
     };
     const int u = tile_.u0 + x, v = tile_.v0 + y;
     const float value = image(u, v);
-    if (is_removed_pixel(value)) return 0;
+    if (is_removed_pixel(value)) return kRemovedDepth;
     return value > 0 || !tile_.is_in_image(x, y)
                ? value
                : between_neighbors(image, tile_.width, tile_.height, u, v);

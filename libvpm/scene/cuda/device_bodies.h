@@ -19,7 +19,7 @@ namespace vpm::cuda {
 // Points to the device memory for an image, by pixel.
 struct ImageRoom {
   Vec3f* normals = nullptr;   // camera axes, as DepthSurface reads them
-  float* measured = nullptr;  // inverse depth, 1/m, holes closed
+  float* measured = nullptr;  // inverse depth, 1/m, holes closed; -0 where a pixel was removed
   InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
   std::int32_t levels = 0;
 };

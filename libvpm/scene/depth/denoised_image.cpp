@@ -192,11 +192,6 @@ inline float without_mark(float inverse) {
 }
 
 VPM_VECTOR_CLONES
-void copy_measured(const float* inverse, int width, float* measured) {
-  for (int u = 0; u < width; ++u) measured[u] = without_mark(inverse[u]);
-}
-
-VPM_VECTOR_CLONES
 void mark_removed(const float* depth, int width, float* inverse) {
   for (int u = 0; u < width; ++u) inverse[u] = is_removed(depth[u]) ? depth[u] : inverse[u];
 }
@@ -266,7 +261,7 @@ void DenoisedImage::read_rows(const SeenImage& seen, Denoising points, int begin
   const auto read_row = points == Denoising::on ? denoise_row : take_row;
   for (int v = begin; v < end; ++v) {
     read_row(seen, v, tiles_[0].data() + first_of_row(v), normals_.data() + first_of_row(v));
-    copy_measured(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+    std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
   }
 }
 

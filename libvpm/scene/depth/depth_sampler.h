@@ -91,7 +91,8 @@ struct DepthSampler {
   const Vec3f* normals = nullptr;  // one per pixel, camera axes; zero where unknown
   // Holds ranges over 2^l by 2^l pixels in tiles[l]; tiles[0].high is a pixel's inverse depth.
   const InverseDepthRange* tiles[kMaxLevels] = {};
-  // Holds inverse depth, 1/m, before denoising: what was seen to be free stays so.
+  // Holds inverse depth, 1/m, before denoising: what was seen to be free stays so. -0 where a pixel
+  // was removed (cloud/depth_image.h).
   const float* measured = nullptr;
 
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }

@@ -10,14 +10,14 @@
 namespace vpm {
 namespace {
 
-constexpr int kStep = 10;                        // pixels between those that are compared
-constexpr double kPerDeviation = 4;              // readings further apart are of two surfaces
-constexpr double kLeast = 0.002, kMost = 0.045;  // bounds of the agreement, per metre of depth
-constexpr double kSame = 0.05;                   // per metre of depth: more is another surface
-constexpr double kAlike = 0.9;                   // cosine of normals of one surface
-constexpr double kFrontal = 0.3;                 // least cosine of incidence
-constexpr double kWellBefore = 0.03;             // per metre of depth
-constexpr std::size_t kFew = 30;                 // fewer readings tell nothing
+constexpr int kStep = 10;                         // pixels between those that are compared
+constexpr double kPerDeviation = 6;               // readings further apart are of two surfaces
+constexpr double kMostPixels = kSilhouetteReach;  // bounds the agreement
+constexpr double kSame = 0.05;                    // per depth: more is another surface
+constexpr double kAlike = 0.9;                    // cosine of normals of one surface
+constexpr double kFrontal = 0.3;                  // least cosine of incidence
+constexpr double kWellBefore = 0.03;              // per depth
+constexpr std::size_t kFew = 60;                  // fewer readings tell nothing
 
 // Holds a clear pixel's place and normal, the rig's frame, and its depth, m.
 struct ClearPixel {
@@ -36,9 +36,11 @@ std::vector<ClearPixel> clear_pixels(const RigCamera& camera) {
   return pixels;
 }
 
-// Adds how far pixels of one camera are from the surface that another sees there.
+// Holds the depth of a pixel, m, and how far it is from what another camera sees there, per depth.
+using Deviation = std::pair<double, double>;
+
 void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& other,
-                    std::vector<double>& deviations) {
+                    std::vector<Deviation>& deviations) {
   for (const ClearPixel& pixel : pixels) {
     const Vec3 at = other.from_rig * pixel.place;
     const SurfaceSample seen = other.image.sample(at);
@@ -46,8 +48,19 @@ void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& othe
         dot(other.to_rig.rotation * seen.normal, pixel.normal) <= kAlike ||
         -dot(seen.normal, at) <= kFrontal * norm(at))
       continue;
-    deviations.push_back(std::fabs(seen.distance));
+    deviations.emplace_back(pixel.depth, std::fabs(seen.distance) / pixel.depth);
   }
+}
+
+// Returns the robust deviation, per depth, of the nearer half of them: tools touch what is near,
+// and noise grows faster than depth.
+double deviation_of(std::vector<Deviation>& deviations) {
+  constexpr double kNormal = 1.48;  // median to standard deviation
+  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
+  std::nth_element(deviations.begin(), middle, deviations.end());
+  std::vector<double> near;
+  for (auto one = deviations.begin(); one != middle; ++one) near.push_back(one->second);
+  return kNormal * median(near);
 }
 
 }  // namespace
@@ -71,35 +84,36 @@ bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v) {
 }
 
 RigAgreement agreement_of(std::span<const RigCamera> cameras) {
-  constexpr double kUnknown = -1, kNormal = 1.48;  // median to standard deviation
+  constexpr double kUnknown = -1;
   const std::size_t count = cameras.size();
   std::vector<std::vector<ClearPixel>> pixels;
-  std::vector<double> depths;
   RigAgreement agreement;
   agreement.of_pairs.assign(count * count, kUnknown);
-  for (const RigCamera& camera : cameras) {
-    pixels.push_back(clear_pixels(camera));
-    for (const ClearPixel& pixel : pixels.back()) depths.push_back(pixel.depth);
-  }
+  for (const RigCamera& camera : cameras) pixels.push_back(clear_pixels(camera));
   double largest = 0;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
-      std::vector<double> deviations;
+      std::vector<Deviation> deviations;
       add_deviations(pixels[i], cameras[j], deviations);
       add_deviations(pixels[j], cameras[i], deviations);
       if (deviations.size() <= kFew) continue;
-      const double deviation = kNormal * median(deviations);
+      const double deviation = deviation_of(deviations);
       agreement.of_pairs[i * count + j] = agreement.of_pairs[j * count + i] = deviation;
       largest = std::max(largest, deviation);
     }
   }
-  const double scale = depths.empty() ? 1 : median(depths);
-  for (double& one : agreement.of_pairs) {
-    one = std::clamp(kPerDeviation * (one == kUnknown ? largest : one), kLeast * scale,
-                     kMost * scale);
+  const auto pixel = [&](std::size_t i) {
+    return 1 / std::min(cameras[i].image.k.fx, cameras[i].image.k.fy);
+  };
+  for (std::size_t pair = 0; pair < count * count; ++pair) {
+    const std::size_t i = pair / count, j = pair % count;
+    const double width = std::max(pixel(i), pixel(j));
+    double& one = agreement.of_pairs[pair];
+    const double deviation = i == j ? 0 : one == kUnknown ? largest : one;
+    one = std::clamp(kPerDeviation * deviation, width, kMostPixels * width);
     agreement.most = std::max(agreement.most, one);
   }
-  agreement.well_before = kWellBefore * scale + agreement.most;
+  agreement.well_before = kWellBefore + agreement.most;
   return agreement;
 }
 

@@ -9,14 +9,17 @@
 
 namespace vpm {
 
+// Distances per depth, m/m: noise and the width of pixels grow with depth, and so does what an
+// angle is wrong by; a unit of length decides nothing.
 struct RigAgreement {
-  // For cameras i and j, at i * count + j, the distance, m, within which their readings may be of
-  // one surface: four times the robust deviation of what both see clearly, and at least 2 mm, at
-  // most 45 mm, at 1 m.
+  // For cameras i and j, at i * count + j, the distance within which their readings may be of one
+  // surface: six times the robust deviation of the nearer half of what both see clearly; at least
+  // the width of the coarser one's pixels, at most that of as many as silhouettes reach over. For i
+  // = j it is the width of the camera's pixels.
   std::vector<double> of_pairs;
-  double most = 0;  // m, the greatest of these
-  // Depth, m, by which something is well before a place: no camera that sees a surface of one piece
-  // of the tool at less than a grazing angle has it so far before the piece.
+  double most = 0;  // the greatest of these
+  // Depth by which something is well before a place: no camera that sees a surface of one piece of
+  // the tool at less than a grazing angle has it so far before the piece.
   double well_before = 0;
 };
 

@@ -31,6 +31,7 @@ template <class Real>
 struct RigReading {
   MaskOf<Real> known;      // not set by default, as all of this: many are reserved, and few used
   Real distance;           // m, signed as in SurfaceSampleOf; 0 where not known
+  Real depth;              // m, of the place
   Real below;              // m, by which the place is deeper than what is on its ray; 0 if aside
   Real weight;             // 0 where not known
   PlaceOf<Real> normal{};  // unit, into free space, the rig's frame
@@ -43,12 +44,12 @@ struct RigSurface {
   static constexpr int kMostCameras = 16;
 
   const RigCamera* cameras = nullptr;
-  // Distances, m, within which readings of cameras i and j, at i * count + j, may be of one
-  // surface.
+  // Distances per depth of the place, m/m (RigAgreement), within which readings of cameras i and j,
+  // at i * count + j, may be of one surface; a camera's own, i = j, is the width of its pixels.
   const double* agreement = nullptr;
   std::int32_t count = 0;
-  double most_agreement = 0;  // m, the greatest of these
-  double well_before = 0;  // m of depth: what hides a place by more tells less than other cameras
+  double most_agreement = 0;  // the greatest of these
+  double well_before = 0;     // per depth: what hides a place by more tells less than other cameras
 
   VPM_HD CameraSet all_cameras() const { return (CameraSet{1} << count) - 1; }
 
@@ -59,6 +60,7 @@ struct RigSurface {
     Sight sight = Sight::out_of_view;
     bool is_whole = false;  // all pixels of these cameras have measured a surface
     double gap = HUGE_VAL;  // m, bounds how far places of a ball behind the surface are from it
+    double margin = 0;      // m, bounds the distances within which readings in it are averaged
     Vec3 center;
     double radius = 0;
   };
@@ -108,16 +110,17 @@ struct RigSurface {
       readings[found] = read(cameras[i], x);
       if (!any(readings[found].known)) continue;
       on_surface.known |= readings[found].known;
-      is_decided |= readings[found].known & (readings[found].below <= well_before);
+      is_decided |= readings[found].known & negated(is_well_before(readings[found]));
       names[found++] = i;
     }
     if (found == 0) return on_surface;
     const Real zero{};
     for (std::int32_t i = 0; i < found; ++i) {
-      const MaskOf<Real> is_left_out = is_decided & (readings[i].below > well_before);
+      const MaskOf<Real> is_left_out = is_decided & is_well_before(readings[i]);
       readings[i].known &= negated(is_left_out);
       readings[i].weight = is_left_out ? zero : readings[i].weight;
     }
+    bound_free_distances(x, readings, names, found);
     on_surface.distance = zero - HUGE_VAL;
     for (std::int32_t i = 0; i < found; ++i) {
       RigReading<Real> mean = readings[i];
@@ -148,10 +151,12 @@ struct RigSurface {
   static VPM_HD Sight sight_of(const BallClass& in_ball) { return in_ball.sight; }
 
   // Classifies a ball. It is free where one camera has seen all of a larger ball free, so that no
-  // mean of readings is behind; behind where it is so for all cameras that see it.
+  // mean of readings is behind, and none is bound by half of most_agreement or less; behind where
+  // it is so for all cameras that see it.
   VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
     BallClass in_ball;
     in_ball.center = center, in_ball.radius = radius;
+    in_ball.margin = most_agreement * (greatest_depth(center) + radius);
     CameraSet deciding = 0, behind = 0, hidden = 0;
     Sight sight = Sight::out_of_view;
     bool is_whole = true;
@@ -161,7 +166,7 @@ struct RigSurface {
       const DepthSurface::BallClass own = image.classify_ball(at, radius);
       const Sight of_camera = DepthSurface::sight_of(own);
       if (of_camera == Sight::out_of_view) continue;
-      if (own.side == Side::free && of_camera == Sight::seen && is_seen_free(image, at, radius))
+      if (own.side == Side::free && of_camera == Sight::seen && is_seen_free(image, at, in_ball))
         return free_ball(in_ball, Sight::seen);
       sight = joined(sight, of_camera);
       if (of_camera == Sight::hole) continue;
@@ -171,7 +176,7 @@ struct RigSurface {
       if (own.side == Side::behind) {
         behind |= bit;
         if (is_hidden(image, at, radius)) hidden |= bit;
-        const double gap = image.largest_gap(own, at, radius) + most_agreement;
+        const double gap = image.largest_gap(own, at, radius) + in_ball.margin;
         in_ball.gap = gap < in_ball.gap ? gap : in_ball.gap;
       } else {
         is_whole = is_whole && image.may_be_flat(own);
@@ -255,17 +260,18 @@ struct RigSurface {
     std::int32_t names[kMostCameras];
     const std::int32_t found = find_ways(x, ways, names);
     const Real zero{};
-    Real length = zero + HUGE_VAL;
+    Real length = zero + HUGE_VAL, depth = zero;
     Place shortest = on_surface.normal;
     for (std::int32_t k = 0; k < found; ++k) {
       const MaskOf<Real> is_shorter = ways[k].known & (ways[k].distance < length);
       length = is_shorter ? ways[k].distance : length;
       shortest = choose(is_shorter, ways[k].normal, shortest);
+      depth = ways[k].depth > depth ? ways[k].depth : depth;
     }
     Place direction{zero, zero, zero};
     for (std::int32_t k = 0; k < found; ++k) {
-      const Real alike =
-          likeness(ways[k].distance - length, most_agreement, dot(ways[k].normal, shortest));
+      const Real alike = likeness(ways[k].distance - length, most_agreement * depth,
+                                  dot(ways[k].normal, shortest));
       direction = direction + (ways[k].known ? alike : zero) * ways[k].normal;
     }
     const MaskOf<Real> has_way = length < HUGE_VAL;
@@ -307,16 +313,17 @@ struct RigSurface {
     using Real = RealOf<Place>;
     constexpr double kMuchLonger = 2;  // times the way to the tangent plane of another camera
     std::int32_t found = 0;
-    Real least = Real{} + HUGE_VAL;
+    Real least = Real{} + HUGE_VAL, depth{};
     for (std::int32_t i = 0; i < count; ++i) {
       RigReading<Real>& way = ways[found];
       way = read(cameras[i], x);
       if (!any(way.known)) continue;
       way.distance = way.distance < 0 ? -way.distance : Real{};  // free, but for disagreement
       least = way.known & (way.distance < least) ? way.distance : least;
+      depth = way.known & (way.depth > depth) ? way.depth : depth;
       names[found++] = i;
     }
-    const Real most = kMuchLonger * least + most_agreement;
+    const Real most = kMuchLonger * least + most_agreement * depth;
     for (std::int32_t k = 0; k < found; ++k) {
       ways[k].known &= ways[k].distance <= most;
       if (any(ways[k].known & (ways[k].distance > 0))) search_way(cameras[names[k]], x, ways[k]);
@@ -352,7 +359,7 @@ struct RigSurface {
       const Vec3 normal = camera.from_rig.rotation * plane.normal;
       if (!seen.known || dot(seen.normal, normal) < DepthSampler::kSmoothCosine) return false;
       const double apart = dot(normal, seen.foot - camera.from_rig * plane.foot);
-      if (!(std::fabs(apart) < most_agreement)) return false;
+      if (!(std::fabs(apart) < in_ball.margin)) return false;
       if (!camera.image.shows(camera.image.classify_ball(at, in_ball.radius),
                               TangentPlane{normal, seen.foot}, tolerance))
         return false;
@@ -362,8 +369,8 @@ struct RigSurface {
 
   // True if a camera has seen all of a larger ball free, so that no mean of readings in the ball is
   // behind the surface.
-  VPM_HD bool is_seen_free(const DepthSurface& image, Vec3 at, double radius) const {
-    const DepthSurface::BallClass wider = image.classify_ball(at, radius + most_agreement);
+  static VPM_HD bool is_seen_free(const DepthSurface& image, Vec3 at, const BallClass& in_ball) {
+    const DepthSurface::BallClass wider = image.classify_ball(at, in_ball.radius + in_ball.margin);
     return wider.side == Side::free && DepthSurface::sight_of(wider) == Sight::seen;
   }
   // True if a camera has something well before all of a ball, and no silhouette beside it.
@@ -371,7 +378,8 @@ struct RigSurface {
     constexpr double kReach = kSilhouetteReach + 5;  // pixels: holes beside a silhouette are filled
     const double least = image.k.fx < image.k.fy ? image.k.fx : image.k.fy;
     const double aside = kReach * quotient(at.z, least);
-    const double wider = radius + (well_before > aside ? well_before : aside);
+    const double before = well_before * (at.z + radius);
+    const double wider = radius + (before > aside ? before : aside);
     return image.classify_ball(at, wider).side == Side::behind;
   }
   static VPM_HD BallClass free_ball(BallClass in_ball, Sight sight) {
@@ -387,14 +395,71 @@ struct RigSurface {
     return Sight::hole;
   }
   // Returns by how much more than a ball a camera must have seen free: nothing where it is alone.
-  VPM_HD double margin_of(const BallClass& in_ball) const {
-    return (in_ball.point & (in_ball.point - 1)) == 0 ? 0 : most_agreement;
+  static VPM_HD double margin_of(const BallClass& in_ball) {
+    return (in_ball.point & (in_ball.point - 1)) == 0 ? 0 : in_ball.margin;
+  }
+  // Returns the greatest depth, m, that a place has to a camera; 0 if it is before none.
+  VPM_HD double greatest_depth(const Vec3& x) const {
+    double greatest = 0;
+    for (std::int32_t i = 0; i < count; ++i) {
+      const double depth = (cameras[i].from_rig * x).z;
+      greatest = depth > greatest ? depth : greatest;
+    }
+    return greatest;
+  }
+  // True where a camera has something well before a place.
+  template <class Real>
+  [[gnu::always_inline]] VPM_HD MaskOf<Real> is_well_before(const RigReading<Real>& reading) const {
+    return reading.below > well_before * reading.depth;
+  }
+
+  // Bounds how far a place is from what each camera has not seen free: no further than the nearest
+  // surface that another camera shows, but for half a pixel of that, unless this one sees free
+  // space there too. Without this a camera that looks along a face would tell the distance to what
+  // is beyond the face, and that be the greatest.
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD void bound_free_distances(const Place& x,
+                                                          RigReading<RealOf<Place>>* readings,
+                                                          const std::int32_t* names,
+                                                          std::int32_t found) const {
+    using Real = RealOf<Place>;
+    using Mask = MaskOf<Real>;
+    const Real zero{};
+    const auto half_pixel = [&](std::int32_t k) __attribute__((always_inline)) {
+      return 0.5 * agreement[names[k] * count + names[k]] * readings[k].depth;
+    };
+    Real least = zero + HUGE_VAL, distance = zero, off = zero;
+    Place normal{zero, zero, zero};
+    for (std::int32_t j = 0; j < found; ++j) {
+      const Real& other = readings[j].distance;
+      const Real length = other < 0 ? -other : other;
+      const Mask is_nearer = readings[j].known & (length < least);
+      least = is_nearer ? length : least;
+      distance = is_nearer ? other : distance;
+      off = is_nearer ? half_pixel(j) : off;
+      normal = choose(is_nearer, readings[j].normal, normal);
+    }
+    for (std::int32_t i = 0; i < found; ++i) {
+      RigReading<Real>& reading = readings[i];
+      const Mask is_further = reading.known & (reading.distance > least + off);
+      if (!any(is_further)) continue;
+      // Half a pixel below the surface, since a camera may see past its border by as much.
+      const Real below = distance + half_pixel(i);
+      const RigCamera& camera = cameras[names[i]];
+      const Place at = camera.from_rig * (x - below * normal);
+      const SurfaceSampleOf<Real> seen =
+          camera.image.sample_and(at, [](const IntOf<Real>&, const IntOf<Real>&) {});
+      const Mask is_bound = is_further & negated(seen.known & (seen.foot.z > at.z));
+      reading.distance = is_bound ? least : reading.distance;
+      reading.normal = choose(is_bound, normal, reading.normal);
+      reading.weight = is_bound ? kSilhouetteWeight * reading.weight : reading.weight;
+    }
   }
 
   // Returns how much readings whose distances differ by this, m, and normals by this cosine, are of
   // one surface: 1 if they are equal.
   template <class Real>
-  [[gnu::always_inline]] static VPM_HD Real likeness(const Real& apart, double agreement,
+  [[gnu::always_inline]] static VPM_HD Real likeness(const Real& apart, const Real& agreement,
                                                      const Real& cosine) {
     const Real zero{}, part = quotient(apart, agreement), rest = 1 - part * part;
     const Real near = rest > 0 ? rest : zero;
@@ -414,9 +479,10 @@ struct RigSurface {
     MaskOf<Real> has_others{};
     for (std::int32_t j = 0; j < found; ++j) {
       if (j == own) continue;
-      const Real alike =
-          likeness(readings[j].distance - mean.distance, agreement[names[own] * count + names[j]],
-                   dot(readings[j].normal, mean.normal));
+      const Real depth = readings[j].depth > mean.depth ? readings[j].depth : mean.depth;
+      const Real alike = likeness(readings[j].distance - mean.distance,
+                                  agreement[names[own] * count + names[j]] * depth,
+                                  dot(readings[j].normal, mean.normal));
       const Real counts = alike * readings[j].weight;
       const MaskOf<Real> is_one = mean.known & (counts > 0);
       if (!any(is_one)) continue;
@@ -447,10 +513,14 @@ struct RigSurface {
     const Real steep = quotient(-dot(widen(gather(camera.image.normals, nearest)), at), length);
     const Real cosine = steep > kLeastCosine ? steep : zero + kLeastCosine;
     reading.distance = seen.known ? seen.distance : zero;
+    reading.depth = at.z;
     reading.below = at.z - seen.foot.z;
-    reading.weight = seen.known ? cosine * cosine : zero;
+    reading.weight = cosine * cosine;
     reading.normal = choose(seen.known, seen.normal, Place{zero, zero, zero});
     read_silhouette(camera, at, length, nearest, reading);
+    // What has smaller pixels, or is nearer, is seen better.
+    const Real pixels = quotient(camera.image.k.fx, seen.foot.z);  // per metre
+    reading.weight = seen.known ? reading.weight * (pixels * pixels) : zero;
     reading.normal = turned(camera.to_rig.rotation, reading.normal);
     return reading;
   }
@@ -481,7 +551,9 @@ struct RigSurface {
     const Real zero{}, one = zero + 1, per_depth = quotient(1, at.z);
     const Intrinsics& k = camera.image.k;
     const Real u = k.fx * (at.x * per_depth) + k.cx - get(&SilhouettePixel::u);
-    const Real v = k.fy * (at.y * per_depth) + k.cy - get(&SilhouettePixel::v);
+    // Offsets in widths of a pixel.
+    const double height = k.fx / k.fy;
+    const Real v = (k.fy * (at.y * per_depth) + k.cy - get(&SilhouettePixel::v)) * height;
     const Real depth = get(&SilhouettePixel::depth);
     Real out_u = get(&SilhouettePixel::out_u), out_v = get(&SilhouettePixel::out_v);
     const Real offset = square_root(u * u + v * v), along = u * out_u + v * out_v;
@@ -493,7 +565,8 @@ struct RigSurface {
     const Real by = offset > 1 ? offset : one;
     out_u = is_corner ? quotient(side * u, by) : out_u;
     out_v = is_corner ? quotient(side * v, by) : out_v;
-    const Real aside = ((is_corner ? side * offset : along) - 0.5) * at.z * (1 / k.fx);
+    const Real to_border = 0.5 * (1 + (height - 1) * (out_v * out_v));  // of the pixel
+    const Real aside = ((is_corner ? side * offset : along) - to_border) * at.z * (1 / k.fx);
     // The pixel of the place is on the far side if its surface is a step beyond the silhouette.
     const Mask is_far =
         camera.image.inverse_depth(nearest, IntOf<Real>{}) * depth < 1 - DepthSampler::kJump;

@@ -12,10 +12,12 @@ namespace vpm {
 
 // Describes a pixel at a silhouette, on the nearer side.
 struct SilhouettePixel {
-  float u = 0, v = 0;          // pixels
-  float depth = 0;             // m, of this pixel
-  float beyond = 0;            // m, of the farthest pixel beside it
-  float out_u = 0, out_v = 0;  // unit direction in the image out of what is nearer; 0 where unknown
+  float u = 0, v = 0;  // pixels
+  float depth = 0;     // m, of this pixel
+  float beyond = 0;    // m, of the farthest pixel beside it
+  // Unit direction across the rays out of what is nearer, 0 where unknown: of as many pixels as are
+  // wide in u, so that it is one in space where pixels are not square.
+  float out_u = 0, out_v = 0;
 };
 
 // Holds plain pointers to the silhouettes of an image, for host or device.
@@ -26,14 +28,14 @@ struct Silhouettes {
   const std::uint32_t* nearest = nullptr;
 };
 
-// Distance in pixels within which a silhouette is read.
+// Distance, in widths of a pixel, within which a silhouette is read; and in rows.
 inline constexpr int kSilhouetteReach = 24;
 
 class ImageSilhouettes {
  public:
   ImageSilhouettes() = default;
   // Finds the silhouettes of an image. A hole within three pixels of a silhouette counts as what is
-  // beyond it.
+  // beyond it; what was removed tells nothing of what is there.
   explicit ImageSilhouettes(const DepthSampler& image);
 
   Silhouettes view() const { return {pixels_.data(), nearest_.data()}; }
