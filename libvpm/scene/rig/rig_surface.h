@@ -150,9 +150,10 @@ struct RigSurface {
   }
   static VPM_HD Sight sight_of(const BallClass& in_ball) { return in_ball.sight; }
 
-  // Classifies a ball. It is free where one camera has seen all of a larger ball free, so that no
-  // mean of readings is behind, and none is bound by half of most_agreement or less; behind where
-  // it is so for all cameras that see it.
+  // Classifies a ball. It is free where one camera has seen all of a ball free that is larger by
+  // the distance within which readings are averaged: that camera's distances are then half of this
+  // or more, bound or not, and no mean with one behind is behind. It is behind where it is so for
+  // all cameras that see it.
   VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
     BallClass in_ball;
     in_ball.center = center, in_ball.radius = radius;
