@@ -161,6 +161,18 @@ void bind_body(py::module_& module) {
            "Puts a vpm.SolidBody at a pose, mesh to world; without, at the origin. Takes no time: "
            "a solid that moves is made anew, or moved by `solids` of a query. Raises ArgumentError "
            "for a solid made without forces, RefusedError for a pose that is not rigid.")
+      .def_static(
+          "of_cameras",
+          [](const std::vector<Body>& images) {
+            const py::gil_scoped_release unlocked;
+            return Body::of_cameras(images);
+          },
+          py::arg("images"),
+          "Makes one body of the depth images of several cameras, which may see the same things "
+          "from "
+          "different sides: what they see counts once, and what one clearly saw free is free. The "
+          "order changes no bit. Raises ArgumentError for none, for more than 16, and for a body "
+          "that is no depth image.")
       .def_property_readonly("is_solid", &Body::is_solid, "True if the body is a solid.")
       .def_property_readonly("points", &Body::points, py::call_guard<py::gil_scoped_release>(),
                              "Number of points with a normal; a solid has none.");

@@ -180,6 +180,19 @@ def test_a_stream_gives_what_an_image_gives(tool, cloud):
         2 * query.run(vpm.Scene(body), pose).volume, rel=1e-12)
 
 
+def test_cameras_are_one_body(tool):
+    left, right = (vpm.Body(vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K, camera_pose=[x, 0, 0, 0, 0, 0, 1]))
+                   for x in (-0.05, 0.05))
+    pose, query = [0, 0, 1.02, 0, 0, 0, 1], vpm.Query(tool)
+    both = query.run(vpm.Scene(vpm.Body.of_cameras([left, right])), pose)
+    assert both.volume == query.run(vpm.Scene(vpm.Body.of_cameras([right, left, right])), pose).volume
+    assert both.volume == pytest.approx(query.run(vpm.Scene(left), pose).volume, rel=0.01)
+    assert query.run(vpm.Scene([left, right]), pose).volume == pytest.approx(2 * both.volume, rel=0.01)
+    assert query.run(vpm.Scene(vpm.Body.of_cameras([left])), pose).volume == query.run(vpm.Scene(left), pose).volume
+    with pytest.raises(vpm.ArgumentError, match="depth images"):
+        vpm.Body.of_cameras([left, vpm.Body(vpm.SolidBody(tool))])
+
+
 def test_threads_share_a_query(tool, scene):
     poses = poses_into_the_wall(40)
     query = vpm.Query(tool)
