@@ -49,6 +49,11 @@ class SolidQuery {
   // Prepares the tool's surface, if that is not done. Throws Error(refused) if the tool keeps none.
   void prepare();
 
+  // Takes the surface that another query of the same tool has prepared, if this one has none.
+  void share_surface_of(const SolidQuery& other) {
+    if (!surface_) surface_ = other.surface_;
+  }
+
   // Returns what the k-th solid gives for the tool at a pose, in the tool's axes and units: the
   // volume to rounding, since all of it is rounded to 2^-60 of the tool. `states` receives that of
   // each of the largest spheres. Finds the `contacts` largest contacts, and the sum of all others,

@@ -1,7 +1,10 @@
 #include "libvpm/query/tool_query.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <utility>
 
 #include "libvpm/core/error.h"
@@ -23,6 +26,35 @@ void for_each_job(std::size_t count, const Body& body) {
     for (std::size_t k = begin; k < end; ++k) body(k);
   });
 }
+
+// Of jobs that threads do at once, tells the failure of the first one in their order that fails.
+class FirstFailure {
+ public:
+  explicit FirstFailure(std::size_t jobs) : job_(jobs) {}
+
+  // Does a job. Threads may do so at once.
+  template <class Work>
+  void watch(std::size_t job, const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (job > job_) return;
+      job_ = job;
+      failure_ = std::current_exception();
+    }
+  }
+  // Returns the first job that has failed, or the number of jobs: those after it need not be done.
+  std::size_t before() const { return job_; }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::atomic<std::size_t> job_;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
 
 // True if one launch can answer for both.
 bool go_together(const QueryOptions& a, const QueryOptions& b) {
@@ -223,12 +255,42 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, std::span<const AnyBody
               std::to_string(queries.size()));
   }
   if (jobs.empty()) return;
-  if (!queries.front()->device_) {
-    for (std::size_t k = 0; k < jobs.size(); ++k)
-      results[k] = queries[jobs[k].tool]->run(scene, jobs[k].pose, {solids, jobs[k].solids});
+  queries.front()->device_ ? run_on_device(queries, scene, jobs, results, solids)
+                           : run_on_cpu(queries, scene, jobs, results, solids);
+}
+
+ToolQuery& ToolQuery::of_thread(std::size_t thread) {
+  std::unique_ptr<ToolQuery>& query = of_threads_[thread];
+  if (!query) query = std::make_unique<ToolQuery>(*this);
+  query->solid_query_->share_surface_of(*solid_query_);
+  return *query;
+}
+
+// Spreads jobs over the threads, which take one after another, unless these are fewer than the
+// threads, which then share each, or follow each other.
+void ToolQuery::run_on_cpu(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
+                           std::span<const Job> jobs, std::span<Result> results,
+                           std::span<const PlacedSolid> solids) {
+  const auto threads = static_cast<std::size_t>(thread_count());
+  const auto answer = [&](ToolQuery& query, std::size_t k) {
+    results[k] = query.run(scene, jobs[k].pose, {solids, jobs[k].solids});
+  };
+  if (threads == 1 || jobs.size() < threads || queries.front()->options_.coherent) {
+    for (std::size_t k = 0; k < jobs.size(); ++k) answer(*queries[jobs[k].tool], k);
     return;
   }
-  run_on_device(queries, scene, jobs, results, solids);
+  for (ToolQuery* const query : queries)
+    query->of_threads_.resize(std::max(query->of_threads_.size(), threads));
+  if (!solids.empty())
+    for (const Job& job : jobs) queries[job.tool]->prepare_surface();
+  std::atomic<std::size_t> next{0};
+  FirstFailure failure(jobs.size());
+  parallel_for(threads, 1, [&](std::size_t thread, std::size_t) {
+    const OneThread alone;
+    for (std::size_t k = 0; (k = next.fetch_add(1, std::memory_order_relaxed)) < failure.before();)
+      failure.watch(k, [&] { answer(queries[jobs[k].tool]->of_thread(thread), k); });
+  });
+  failure.rethrow();
 }
 
 // Asks body by body: all jobs before one, then before the next. The host measures solids.

@@ -38,7 +38,8 @@ class ToolQuery {
 
   // Stores the answers of many jobs, whose tools are indices into `queries`. Has the contract of
   // Query::run. Throws Error(invalid_argument) unless the queries have the same options save level
-  // and stiffness. A device launches up to 16 tools at once.
+  // and stiffness. A device launches up to 16 tools at once; on the CPU each thread answers jobs of
+  // its own.
   static void run(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                   std::span<const Job> jobs, std::span<Result> results,
                   std::span<const PlacedSolid> solids = {});
@@ -84,6 +85,11 @@ class ToolQuery {
     std::vector<double> closures;  // only where the scene has solids
   };
 
+  static void run_on_cpu(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
+                         std::span<const Job> jobs, std::span<Result> results,
+                         std::span<const PlacedSolid> solids);
+  // Returns the copy of this for the thread of a batch, which has it for itself.
+  ToolQuery& of_thread(std::size_t thread);
   static void run_on_device(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                             std::span<const Job> jobs, std::span<Result> results,
                             std::span<const PlacedSolid> solids);
@@ -118,6 +124,7 @@ class ToolQuery {
   std::vector<ContactPatch> patches_;
   Result whole_;
   BatchRoom batch_room_;
+  std::vector<std::unique_ptr<ToolQuery>> of_threads_;  // of a batch on the CPU, once it is asked
 };
 
 // Returns where a measure is computed if queries may use `device`: there, but the measure as

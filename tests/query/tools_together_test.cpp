@@ -1,7 +1,10 @@
 // Tests poses of several tools in one call.
 #include <gtest/gtest.h>
+#include <vpm/device.h>
 
+#include <cmath>
 #include <deque>
+#include <string>
 
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
@@ -53,6 +56,37 @@ TEST_F(ToolsTogether, AnswerAsOneByOne) {
     volume += results_[k].volume;
   }
   EXPECT_GT(volume, 0);
+}
+
+TEST_F(ToolsTogether, GiveTheSameBitsByAnyNumberOfThreads) {
+  std::vector<Result> by_one(poses_.size());
+  set_thread_count(1);
+  ToolQuery::run(together_, cloud_, poses_, by_one);
+  for (const int threads : {2, 3, 16}) {
+    set_thread_count(threads);
+    ToolQuery::run(together_, cloud_, poses_, results_);
+    for (std::size_t k = 0; k < poses_.size(); ++k) testing::expect_equal(by_one[k], results_[k]);
+  }
+  set_thread_count(0);
+}
+
+TEST_F(ToolsTogether, TellTheFirstOfSeveralPosesThatAreRefused) {
+  for (const std::size_t k : {7, 9, 25}) poses_[k].pose.translation.x = 1e40;
+  poses_[7].pose.translation.x = std::nan("");
+  std::string by_one;
+  for (const int threads : {1, 2, 3, 16}) {
+    set_thread_count(threads);
+    std::string refusal;
+    try {
+      ToolQuery::run(together_, cloud_, poses_, results_);
+    } catch (const Error& fault) {
+      refusal = fault.what();
+    }
+    if (threads == 1) by_one = refusal;
+    EXPECT_NE(refusal, "");
+    EXPECT_EQ(refusal, by_one) << threads;
+  }
+  set_thread_count(0);
 }
 
 TEST_F(ToolsTogether, NoPoseIsNoQuestion) {

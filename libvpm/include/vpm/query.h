@@ -63,9 +63,11 @@ class VPM_API Query {
                     std::span<const Pose> solids = {});
 
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
-  // thousands of poses of up to 16 tools at once. `results` must have the size of `jobs`, else
-  // throws Error(invalid_argument), as for a job without such a tool and for coherent queries of
-  // several tools; otherwise as for one pose. After an error the results are unspecified.
+  // thousands of poses of up to 16 tools at once, and on the CPU each thread takes jobs of its own,
+  // with memory like that of another() that is kept for the next jobs. `results` must have the size
+  // of `jobs`, else throws Error(invalid_argument), as for a job without such a tool and for
+  // coherent queries of several tools; otherwise as for one pose. After an error the results are
+  // unspecified.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Ends a motion of coherent poses: the next pose does not follow from the last.
