@@ -1,6 +1,7 @@
 #include "libvpm/file/text.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/number_list.h"
@@ -173,25 +174,66 @@ void LineStream::begin() {
   stream_ = &utf8_;
 }
 
+bool LineStream::read_more() {
+  if (std::istream::traits_type::eq_int_type(stream_->peek(), std::istream::traits_type::eof()))
+    return false;
+  ahead_.erase(0, std::exchange(at_, 0));
+  const std::size_t before = ahead_.size();
+  const std::streamsize there = std::max<std::streamsize>(stream_->rdbuf()->in_avail(), 1);
+  ahead_.resize(before + static_cast<std::size_t>(there));
+  stream_->read(ahead_.data() + before, there);
+  return true;
+}
+
 std::optional<std::string> LineStream::next() {
   constexpr std::size_t kLongest = 1'000'000;  // bytes
-  using Traits = std::istream::traits_type;
   if (!has_begun_) begin();
-  std::string line;
-  bool has_any = false;
-  for (;;) {
-    const auto character = stream_->get();
-    if (Traits::eq_int_type(character, Traits::eof())) break;
-    const char c = Traits::to_char_type(character);
-    const bool is_pair = passes_over_lf_ && c == '\n';
-    passes_over_lf_ = c == '\r';
-    if (is_pair) continue;
-    if (c == '\n' || c == '\r') return line;
-    has_any = true;
-    line += c;
-    if (line.size() > kLongest) refuse("a line of more than a million bytes is no text");
+  if (at_ == ahead_.size() && !read_more()) return std::nullopt;
+  if (std::exchange(passes_over_lf_, false) && ahead_[at_] == '\n' && ++at_ == ahead_.size() &&
+      !read_more())
+    return std::nullopt;
+  std::size_t size = 0;  // of the line, as far as it was searched
+  for (;; ++size) {
+    if (at_ + size == ahead_.size() && !read_more()) break;
+    const char c = ahead_[at_ + size];
+    if (c == '\n' || c == '\r') break;
+    if (size == kLongest) refuse("a line of more than a million bytes is no text");
   }
-  return has_any ? std::optional(line) : std::nullopt;
+  std::string line = ahead_.substr(at_, size);
+  at_ += size;
+  if (at_ < ahead_.size()) passes_over_lf_ = ahead_[at_++] == '\r';
+  return line;
+}
+
+std::string LineStream::next_lines(bool may_wait) {
+  constexpr std::size_t kLongest = std::size_t{1} << 16;  // bytes
+  if (!has_begun_) begin();
+  const auto can_read = [&] { return (!may_wait || has_more()) && read_more(); };
+  if (passes_over_lf_) {
+    if (at_ == ahead_.size() && !can_read()) return {};
+    passes_over_lf_ = false;
+    if (ahead_[at_] == '\n') ++at_;
+  }
+  for (std::size_t searched = 0; ahead_.find('\n', at_ + searched) == ahead_.npos;) {
+    searched = ahead_.size() - at_;
+    const bool ends_in_cr = ahead_.find('\r', at_) != ahead_.npos;
+    if (ends_in_cr || searched > kLongest || !can_read()) return {};
+  }
+  if (may_wait && !has_more()) return {};
+  const std::size_t end = ahead_.rfind('\n') + 1;
+  const std::string_view lines = std::string_view(ahead_).substr(at_, end - at_);
+  for (std::size_t k = 0; (k = lines.find('\r', k)) != lines.npos; ++k)
+    if (lines[k + 1] != '\n') return {};
+  at_ = end;
+  return std::string(lines);
+}
+
+void LineStream::give_back(std::string_view lines) {
+  ahead_.replace(0, std::exchange(at_, 0), lines);
+}
+
+std::size_t count_lines(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }
 
 }  // namespace vpm::file

@@ -82,9 +82,12 @@ class TextCursor {
 // Returns what is left of a stream. Throws Error(refused) for more than 256 MB.
 std::string rest_of(std::istream& stream);
 
+// Returns the number of lines in a text whose lines all end in LF.
+std::size_t count_lines(std::string_view text);
+
 // Reads the lines of a stream as they come: a line is returned as soon as its end is read, so that
-// a pipe is answered line by line. Of a stream in UTF-16, which begins with its mark, all is read
-// at once, and lines are in UTF-8.
+// a pipe is answered line by line. Reads ahead what is there. Of a stream in UTF-16, which begins
+// with its mark, all is read at once, and lines are in UTF-8.
 class LineStream {
  public:
   // The stream must outlive this.
@@ -94,12 +97,26 @@ class LineStream {
   // for a line of more than a million bytes, which no text has.
   std::optional<std::string> next();
 
+  // Returns the next whole lines that are there, with their ends. Returns "" where next() is to be
+  // asked instead: before a line that does not end in LF or CRLF, or not soon, and at the end. Of a
+  // stream that one `may_wait` for, such as a pipe, returns lines only if there is more
+  // after them, so that the next call need not wait.
+  std::string next_lines(bool may_wait);
+  // Takes back the last lines that next_lines() returned.
+  void give_back(std::string_view lines);
+
  private:
   // Replaces a stream in UTF-16 by its text in UTF-8.
   void begin();
+  // Reads what is there, and waits for the first byte; false at the end of the stream.
+  bool read_more();
+  // True if there is something to read.
+  bool has_more() const { return stream_->rdbuf()->in_avail() > 0; }
 
   std::istream* stream_;
   std::istringstream utf8_;
+  std::string ahead_;   // has been read
+  std::size_t at_ = 0;  // what of it was returned
   bool has_begun_ = false;
   bool passes_over_lf_ = false;  // the last line ended in CR
 };

@@ -125,6 +125,11 @@ Pose from_extrinsic(const json& extrinsic, double* deviation) {
 
 }  // namespace
 
+bool is_json(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  return first != line.npos && (line[first] == '{' || line[first] == '[');
+}
+
 void OpenBrackets::add(std::string_view line) {
   for (const char letter : line) {
     if (!is_in_text_) {

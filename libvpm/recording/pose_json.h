@@ -11,6 +11,9 @@
 
 namespace vpm {
 
+// True if a line begins as JSON, or a list as numpy prints it, does.
+bool is_json(std::string_view line);
+
 // Follows the brackets of JSON, or of a list as numpy prints it, from line to line.
 class OpenBrackets {
  public:

@@ -4,9 +4,11 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "libvpm/core/error.h"
@@ -20,11 +22,6 @@ namespace {
 
 constexpr const char* kBlank = " \t\r";
 
-bool is_json(const std::string& line) {
-  const std::size_t first = line.find_first_not_of(kBlank);
-  return first != std::string::npos && (line[first] == '{' || line[first] == '[');
-}
-
 bool is_last_row(const std::vector<double>& row) {
   return row == std::vector<double>{0, 0, 0, 1};
 }
@@ -33,13 +30,6 @@ bool is_last_row(const std::vector<double>& row) {
 bool may_begin_matrix(const std::vector<double>& row) {
   if (row.size() != kMatrixRow) return false;
   return std::abs(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] - 1) <= kRotationTolerance;
-}
-
-// True if a number is not finite, or all are zero.
-bool are_undefined(const std::vector<double>& numbers) {
-  const auto is_infinite = [](double number) { return !std::isfinite(number); };
-  return std::any_of(numbers.begin(), numbers.end(), is_infinite) ||
-         std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0; });
 }
 
 bool may_be_by_columns(std::vector<double> rows, const std::vector<double>& last) {
@@ -90,10 +80,18 @@ PoseReader::PoseReader(const std::string& path)
     : name_(path == "-" ? "standard input" : path),
       stream_(path == "-" ? std::cin : file_),
       lines_(stream_) {
+  std::error_code fault;
+  may_wait_ = !std::filesystem::is_regular_file(path == "-" ? "/dev/stdin" : path, fault);
   if (path == "-") return;
   errno = 0;
   file_.open(path);
   if (!file_) refuse("cannot read " + path + ": " + std::strerror(errno));
+}
+
+void PoseReader::check_read() {
+  if (!stream_.bad()) return;
+  if (fault_ == 0) fault_ = errno;
+  refuse("cannot read " + name_ + ": " + std::strerror(fault_));
 }
 
 void PoseReader::refuse_empty() const {
@@ -119,7 +117,7 @@ void PoseReader::begin_array() {
   constexpr int kFirstByte = 0x93;  // of .npy
   errno = 0;
   const int first = stream_.peek();
-  if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
+  check_read();
   if (first != kFirstByte) return;
   bytes_ = file::rest_of(stream_);
   array_ = file::parse_npy(std::as_bytes(std::span(bytes_.data(), bytes_.size())), name_);
@@ -127,25 +125,18 @@ void PoseReader::begin_array() {
 }
 
 std::optional<Pose> PoseReader::next_of_array() {
-  if ((item_ + 1) * per_pose_ > array_->size) return std::nullopt;
+  if (!has_more()) return std::nullopt;
   std::vector<double> numbers(per_pose_);
   for (std::size_t k = 0; k < per_pose_; ++k) numbers[k] = array_->at(item_ * per_pose_ + k);
   ++item_;
-  time_.reset();
+  parser_.forget_last();
   try {
-    const TimedPose found = from_numbers(std::move(numbers), std::nullopt);
-    time_ = found.time;
-    return found.pose;
+    last_ = parser_.of_numbers(std::move(numbers));
+    return last_.pose;
   } catch (const Error& fault) {
+    last_.time = parser_.time();
     refuse(fault.problem(), place(), fault.hint());
   }
-}
-
-bool PoseReader::take_names(const std::string& text) {
-  std::optional<PoseNames> found = names_in(text, line_);
-  if (!found) return false;
-  if (!found->orders.empty() || !names_) names_ = std::move(found);
-  return true;
 }
 
 std::optional<std::string> PoseReader::next_line(bool stops_at_blank) {
@@ -157,43 +148,61 @@ std::optional<std::string> PoseReader::next_line(bool stops_at_blank) {
     if (is_json(*line)) return line;
     const std::size_t comment = std::min(line->find('#'), line->size());
     const bool is_comment = comment < line->size();
-    if (is_comment) take_names(line->substr(comment));
+    if (is_comment) parser_.take_names(line->substr(comment), line_);
     line->resize(comment);
     if (line_ == heading_ && line->starts_with("sep=")) {  // as Excel writes and wants it
       ++heading_;
       continue;
     }
-    if (line_ == heading_ && take_names(*line)) continue;
+    if (line_ == heading_ && parser_.take_names(*line, line_)) continue;
     if (line->find_first_not_of(kBlank) != std::string::npos) return line;
     has_passed_blank_ = has_passed_blank_ || !is_comment;
     if (stops_at_blank && !is_comment) return "";
   }
-  if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
+  check_read();
   return std::nullopt;
 }
 
 std::optional<Pose> PoseReader::next() {
   if (read_ == 0 && !array_) begin_array();
   if (array_) return next_of_array();
-  if (item_ >= list_.size()) {
+  if (!has_more()) {
     list_.clear();
     item_ = 0;
     const std::optional<std::string> line = next_line();
     if (!line) return std::nullopt;
-    time_.reset();
-    is_undefined_ = false;
+    parser_.forget_last();
     try {
       list_ = is_json(*line) ? parse_json(*line) : std::vector{parse_text(*line)};
     } catch (const Error& fault) {
+      last_.time = parser_.time();
       const std::string what = fault.where().empty() ? "" : fault.where() + ": ";
       refuse(what + fault.problem(), place(), fault.hint());
     }
     item_ = 0;
   }
-  time_ = list_[item_].time;
-  id_ = list_[item_].id;
-  solids_ = list_[item_].solids;
-  return list_[item_++].pose;
+  last_ = list_[item_++];
+  return last_.pose;
+}
+
+std::optional<PoseLines> PoseReader::next_lines() {
+  if (has_more() || ahead_ || array_ || read_ == 0) return std::nullopt;
+  errno = 0;
+  std::string text = lines_.next_lines(may_wait_);
+  check_read();
+  if (text.empty()) return std::nullopt;
+  const std::size_t count = file::count_lines(text);
+  read_ += count;
+  return PoseLines{std::move(text), count, parser_};
+}
+
+void PoseReader::give_back(std::string_view lines) {
+  read_ -= file::count_lines(lines);
+  lines_.give_back(lines);
+}
+
+bool PoseReader::has_more() const {
+  return array_ ? (item_ + 1) * per_pose_ <= array_->size : item_ < list_.size();
 }
 
 std::string PoseReader::place() const {
@@ -220,7 +229,7 @@ void PoseReader::add_lines_of_json(std::string& text) {
     refuse("a bracket that opens here is not closed", {}, "close it, or write a pose on each line");
 }
 
-std::vector<PoseReader::TimedPose> PoseReader::parse_json(std::string text) {
+std::vector<ToldPose> PoseReader::parse_json(std::string text) {
   add_lines_of_json(text);
   const nlohmann::json value = json_or_print(text);
   if (value.is_discarded()) {
@@ -228,32 +237,20 @@ std::vector<PoseReader::TimedPose> PoseReader::parse_json(std::string text) {
            "write each pose as [tx,ty,tz,qx,qy,qz,qw], or in an object as \"pose\"");
   }
   const nlohmann::json* const list = list_of_poses(value);
-  if (list == nullptr) return {parse_value(value)};
+  if (list == nullptr) return {parser_.of_value(value)};
   if (list->empty()) refuse("\"poses\" is an empty list");
-  std::vector<TimedPose> poses;
+  std::vector<ToldPose> poses;
   for (const nlohmann::json& item : *list) {
     item_ = poses.size() + 1;
-    poses.push_back(parse_value(item));
+    poses.push_back(parser_.of_value(item));
   }
   return poses;
 }
 
-PoseReader::TimedPose PoseReader::parse_value(const nlohmann::json& value) {
-  if (!value.is_object()) return from_numbers(numbers_of(value), std::nullopt);
-  const std::optional<double> time = time_of(value);
-  const ObjectPose pose = pose_of_object(value);
-  time_ = time;
-  TimedPose found =
-      pose.are_named ? TimedPose{rigid(pose.numbers), time, {}} : from_numbers(pose.numbers, time);
-  if (value.contains("id")) found.id = value["id"].dump();
-  if (value.contains("solids")) found.solids = poses_of_solids(value["solids"], largest_deviation_);
-  return found;
-}
-
-PoseReader::TimedPose PoseReader::parse_text(const std::string& line) {
+ToldPose PoseReader::parse_text(const std::string& line) {
   std::vector<double> numbers = numbers_of_line(line);
   if (numbers.size() == kMatrixRow) add_rows(numbers);
-  return from_numbers(std::move(numbers), std::nullopt);
+  return parser_.of_numbers(std::move(numbers));
 }
 
 void PoseReader::add_rows(std::vector<double>& numbers) {
@@ -289,26 +286,6 @@ void PoseReader::add_rows(std::vector<double>& numbers) {
     add(*row);
     rows_ = 4;
   }
-}
-
-Pose PoseReader::rigid(const std::vector<double>& numbers) {
-  is_undefined_ = are_undefined(numbers);
-  double deviation = 0;
-  const Pose pose = from_untimed(numbers, &deviation);
-  largest_deviation_ = std::max(largest_deviation_, deviation);
-  return pose;
-}
-
-PoseReader::TimedPose PoseReader::from_numbers(std::vector<double> n, std::optional<double> time) {
-  const bool is_matrix = n.size() == kMatrix || n.size() == kThreeRows;
-  if (names_ && !(is_matrix && !fitting_order(names_->orders, n.size())))
-    n = in_usual_order(n, *names_);
-  if (n.size() == kTimedPose && !time) {
-    time = seconds_of_stamp(n.front());
-    n.erase(n.begin());
-  }
-  time_ = time;  // also told of a pose that is refused
-  return {rigid(n), time};
 }
 
 Pose read_camera_pose(const std::string& path, double* deviation) {

@@ -4,17 +4,24 @@
 #include <cstddef>
 #include <fstream>
 #include <istream>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libvpm/core/pose.h"
 #include "libvpm/file/npy.h"
 #include "libvpm/file/text.h"
-#include "libvpm/recording/pose_columns.h"
+#include "libvpm/recording/pose_parser.h"
 
 namespace vpm {
+
+// Lines of a file, each with its end, and what understands those of them that are plain.
+struct PoseLines {
+  std::string text;
+  std::size_t count = 0;
+  PoseParser parser;
+};
 
 // Reads poses from a stream, one at a time, so that a pipe is answered line by line. Formats, told
 // apart line by line:
@@ -41,36 +48,43 @@ class PoseReader {
   // pose or the file cannot be read.
   std::optional<Pose> next();
 
+  // Returns the lines after the last pose that are there, so that other threads may understand
+  // them. Empty where only next() can go on: at the end, before the first pose, within a list or an
+  // array, before a line that is long or does not end in LF, and where one would have to wait for
+  // the lines or what comes after them. Throws Error(refused) if the file cannot be read.
+  std::optional<PoseLines> next_lines();
+  // Takes back the last lines that next_lines() returned, from the first one on that is not plain:
+  // next() goes on there.
+  void give_back(std::string_view lines);
+  // True if next() has a pose without reading on: one of a list or an array.
+  bool has_more() const;
+
   // Returns the value of `id` beside the last pose in an object of JSON, as JSON; empty if it has
   // none.
-  const std::string& id() const { return id_; }
+  const std::string& id() const { return last_.id; }
   // Returns the poses in "solids" beside the last pose; empty if it has none.
-  const std::vector<Pose>& solids() const { return solids_; }
+  const std::vector<Pose>& solids() const { return last_.solids; }
   // Returns the time of the last pose in seconds; empty if its line has none.
-  std::optional<double> time() const { return time_; }
+  std::optional<double> time() const { return last_.time; }
   // True if the last line that was read has numbers that are not finite, or only zeros, which
   // trackers write where they are lost. Also after next() has refused it.
-  bool is_undefined() const { return is_undefined_; }
+  bool is_undefined() const { return parser_.is_undefined(); }
   // Returns the name and line of the last pose, for messages.
   std::string place() const;
   // Throws Error(refused) that there is no pose.
   [[noreturn]] void refuse_empty() const;
 
   // Returns the largest deviation of a rotation before it was normalised.
-  double largest_deviation() const { return largest_deviation_; }
+  double largest_deviation() const { return parser_.largest_deviation(); }
 
  private:
-  struct TimedPose {
-    Pose pose;
-    std::optional<double> time;
-    std::string id = {};  // JSON; empty without one
-    std::vector<Pose> solids = {};
-  };
   struct Line {
     std::string text;
     std::size_t number = 0;
   };
 
+  // Throws Error(refused) if reading has failed.
+  void check_read();
   // Takes the whole stream if it begins as an array of NumPy does.
   void begin_array();
   std::optional<Pose> next_of_array();
@@ -81,39 +95,30 @@ class PoseReader {
   std::optional<std::string> any_line();
   // Returns the poses of a JSON text, several if it is a list of them, and of the lines after it
   // until its brackets close.
-  std::vector<TimedPose> parse_json(std::string text);
+  std::vector<ToldPose> parse_json(std::string text);
   void add_lines_of_json(std::string& text);
-  TimedPose parse_value(const nlohmann::json& value);
-  TimedPose parse_text(const std::string& line);
-  // Takes the names of columns in the text; false if it has none.
-  bool take_names(const std::string& text);
+  ToldPose parse_text(const std::string& line);
   // Adds the lines of a matrix after its first.
   void add_rows(std::vector<double>& numbers);
-  // Takes 7 numbers, 8 with the time first, or a matrix; where columns are named, in their order.
-  TimedPose from_numbers(std::vector<double> numbers, std::optional<double> time);
-  // Returns the pose of 7 numbers or a matrix; counts its deviation.
-  Pose rigid(const std::vector<double>& numbers);
 
   std::string name_;
   std::ifstream file_;
   std::istream& stream_;
+  int fault_ = 0;          // errno of what failed
+  bool may_wait_ = false;  // it is no regular file
   file::LineStream lines_;
   std::string bytes_;                    // of an array
   std::optional<file::NpyArray> array_;  // if the file is one
   std::size_t per_pose_ = 0;             // numbers of a pose in the array
-  std::optional<PoseNames> names_;
+  PoseParser parser_;
   int rows_ = 0;  // lines of each matrix: 3 or 4, 0 before the first
   bool has_passed_blank_ = false;
   std::size_t heading_ = 1;          // number of the line that may name the columns
   std::optional<Line> ahead_;        // has been read already
   std::size_t read_ = 0, line_ = 0;  // lines read, and the line of the last pose
-  std::vector<TimedPose> list_;      // poses of the last line
+  std::vector<ToldPose> list_;       // poses of the last line
   std::size_t item_ = 0;             // counts those of the list that were returned
-  std::optional<double> time_;
-  std::string id_;
-  std::vector<Pose> solids_;
-  bool is_undefined_ = false;
-  double largest_deviation_ = 0;
+  ToldPose last_;
 };
 
 // Returns the pose, camera to world, of a file that holds exactly one: in the formats of

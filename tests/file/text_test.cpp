@@ -33,6 +33,37 @@ TEST(Text, LinesEndInEachKindOfEnd) {
   }
 }
 
+// Returns the lines that are handed out together and, after them, one by one.
+std::vector<std::string> handed_out(const std::string& text, bool may_wait = false) {
+  std::istringstream stream(text);
+  LineStream reader(stream);
+  std::vector<std::string> lines{reader.next_lines(may_wait)};
+  while (const auto line = reader.next()) lines.push_back(*line);
+  return lines;
+}
+
+TEST(Text, LinesThatEndInLfAreHandedOutTogether) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(handed_out("a\nb\r\nc"), (Lines{"a\nb\r\n", "c"}));
+  EXPECT_EQ(handed_out("a\nb\rc\n"), (Lines{"", "a", "b", "c"}));
+  EXPECT_EQ(handed_out("a\rb\r"), (Lines{"", "a", "b"}));
+  EXPECT_EQ(handed_out("a"), (Lines{"", "a"}));
+  EXPECT_EQ(handed_out(""), Lines{""});
+  // After these lines one would have to wait.
+  EXPECT_EQ(handed_out("a\nb\n", true), (Lines{"", "a", "b"}));
+}
+
+TEST(Text, LinesMayBeGivenBack) {
+  std::istringstream stream("a\nb\nc\nd");
+  LineStream reader(stream);
+  EXPECT_EQ(reader.next(), "a");
+  EXPECT_EQ(reader.next_lines(false), "b\nc\n");
+  reader.give_back("c\n");
+  EXPECT_EQ(reader.next(), "c");
+  EXPECT_EQ(reader.next(), "d");
+  EXPECT_EQ(reader.next(), std::nullopt);
+}
+
 TEST(Text, BinaryDataAfterACrKeepsItsFirstByte) {
   TextCursor cursor("ply\rend_header\r\n\x01");
   cursor.line();

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -27,30 +29,45 @@ struct Spread {
   std::size_t takes_at_most;
   std::atomic<int> taking{0};
 
-  // Returns the message of the failure, or "".
+  AnsweredChunk answer(const PoseChunk& chunk) const {
+    AnsweredChunk answered;
+    for (std::size_t k = 0; k < chunk.poses.size(); ++k) {
+      const std::size_t index = chunk.first + k;
+      EXPECT_EQ(chunk.poses[k].pose.translation.x, static_cast<double>(index));
+      std::this_thread::sleep_for(std::chrono::microseconds(index % 7 == 0 ? 200 : 5));
+      if (std::ranges::count(failing, index) > 0) {
+        answered.failure = std::make_exception_ptr(std::runtime_error(std::to_string(index)));
+        return answered;
+      }
+      answered.poses.push_back({chunk.poses[k], {}, {}, {}, 0});
+      answered.poses.back().result.volume = 2 * chunk.poses[k].pose.translation.x;
+    }
+    return answered;
+  }
+  void take(const AnsweredChunk& answered) {
+    EXPECT_EQ(taking.fetch_add(1), 0);
+    for (const AnsweredPose& pose : answered.poses) {
+      if (taken.size() == takes_at_most) throw std::runtime_error("no room");
+      taken.push_back(pose.result.volume);
+    }
+    taking.fetch_sub(1);
+    if (answered.failure) std::rethrow_exception(answered.failure);
+  }
+
+  // Adds all poses, some at once. Returns the message of the failure, or "".
   std::string run(std::size_t threads) {
     taken.clear();
+    taking = 0;
     try {
       PoseSpread spread(
-          threads,
-          [&](std::size_t thread, std::size_t index, const AskedPose& asked) {
-            EXPECT_LT(thread, threads);
-            EXPECT_EQ(asked.pose.translation.x, static_cast<double>(index));
-            std::this_thread::sleep_for(std::chrono::microseconds(index % 7 == 0 ? 200 : 5));
-            for (const std::size_t k : failing)
-              if (k == index) throw std::runtime_error(std::to_string(k));
-            AnsweredPose answered{asked, {}, {}, {}, 0};
-            answered.result.volume = 2 * asked.pose.translation.x;
-            return answered;
-          },
-          [&](const AnsweredPose& answered) {
-            EXPECT_EQ(taking.fetch_add(1), 0);
-            if (taken.size() == takes_at_most) throw std::runtime_error("no room");
-            taken.push_back(answered.result.volume);
-            taking.fetch_sub(1);
-          });
-      for (std::size_t k = 0; k < kPoses; ++k)
-        spread.add({{{}, {static_cast<double>(k), 0, 0}}, {}, {}});
+          threads, [&] { return [&](const PoseChunk& chunk) { return answer(chunk); }; },
+          [&](const AnsweredChunk& answered) { take(answered); });
+      for (std::size_t first = 0; first < kPoses; first += 20) {
+        PoseChunk chunk{first};
+        for (std::size_t k = first; k < first + 20; ++k)
+          chunk.poses.push_back({{{}, {static_cast<double>(k), 0, 0}}, {}, {}});
+        spread.add(chunk);
+      }
       spread.finish();
     } catch (const std::runtime_error& failure) {
       return failure.what();
@@ -90,19 +107,69 @@ TEST(PoseSpread, TellsThatAnswersCannotBeTaken) {
   }
 }
 
+TEST(PoseSpread, TellsThatAThreadCannotBegin) {
+  PoseSpread spread(
+      3, []() -> PoseSpread::Answer { throw std::runtime_error("no memory"); },
+      [](const AnsweredChunk&) {});
+  EXPECT_THROW(
+      {
+        spread.add({0, std::vector<AskedPose>(5)});
+        spread.finish();
+      },
+      std::runtime_error);
+}
+
 TEST(PoseSpread, EndsWithPosesThatNobodyWaitsFor) {
-  std::atomic<int> answered{0};
+  std::atomic<std::size_t> answered{0};
   {
     PoseSpread spread(
         3,
-        [&](std::size_t, std::size_t, const AskedPose& asked) {
-          ++answered;
-          return AnsweredPose{asked, {}, {}, {}, 0};
+        [&] {
+          return [&](const PoseChunk& chunk) {
+            answered += chunk.count();
+            return AnsweredChunk{};
+          };
         },
-        [](const AnsweredPose&) {});
-    for (int k = 0; k < 100; ++k) spread.add({});
+        [](const AnsweredChunk&) {});
+    for (int k = 0; k < 100; ++k) spread.add({0, std::vector<AskedPose>(1)});
   }
   EXPECT_LE(answered, 100);
+}
+
+// Whatever fails, each line is either taken or left.
+TEST(PoseSpread, LeavesTheLinesThatWereNotTaken) {
+  std::string all, taken;
+  const auto answer = [](const PoseChunk& chunk) {
+    AnsweredChunk answered;
+    answered.text = chunk.lines.text;
+    if (chunk.first + chunk.count() > 300)
+      answered.failure = std::make_exception_ptr(std::runtime_error("unclear"));
+    return answered;
+  };
+  PoseSpread spread(
+      3, [&] { return answer; },
+      [&](const AnsweredChunk& answered) {
+        if (answered.failure) std::rethrow_exception(answered.failure);
+        taken += answered.text;
+      });
+  const auto add = [&](std::size_t first) {
+    PoseChunk chunk{first};
+    chunk.lines.count = 100;
+    for (std::size_t k = 0; k < 100; ++k)
+      chunk.lines.text += "line " + std::to_string(first + k) + "\n";
+    all += chunk.lines.text;
+    spread.add(chunk);
+  };
+  EXPECT_THROW(
+      {
+        for (std::size_t first = 0; first < 1000; first += 100) add(first);
+        spread.finish();
+      },
+      std::runtime_error);
+  std::string left;
+  for (const PoseChunk& chunk : spread.stop()) left += chunk.lines.text;
+  EXPECT_EQ(taken + left, all);
+  EXPECT_FALSE(taken.empty());
 }
 
 }  // namespace

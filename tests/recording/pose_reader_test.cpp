@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
 #include "libvpm/file/stream.h"
 #include "libvpm/file/temporary_folder.h"
 #include "tests/import/test_files.h"
@@ -246,6 +252,85 @@ TEST(PoseReader, KeysGivenTwiceAreRefused) {
 TEST(PoseReader, DecimalCommasAreRefused) {
   for (const char* const line : {"0,1 0 1 0 0 0 1", "0,0 0 1,0 0 0 0 1", "5 0,1 0 1 0 0 0 1"})
     EXPECT_TRUE(says(test::refusal([&] { camera_pose(line); }), "decimals with a point")) << line;
+}
+
+// A pose with all that is told of it.
+using Told = std::tuple<std::vector<double>, std::optional<double>, std::string, std::size_t>;
+
+Told told(const Pose& pose, std::optional<double> time, const std::string& id,
+          const std::vector<Pose>& solids) {
+  const Quaternion q = quaternion_from_rotation(pose.rotation);
+  const Vec3 t = pose.translation;
+  return {{t.x, t.y, t.z, q.x, q.y, q.z, q.w}, time, id, solids.size()};
+}
+
+// Adds the poses up to a refusal, and the refusal.
+struct AllPoses {
+  std::vector<Told> poses;
+  std::string refusal;
+
+  void add_all(PoseReader& reader) {
+    try {
+      while (const auto pose = reader.next())
+        poses.push_back(told(*pose, reader.time(), reader.id(), reader.solids()));
+    } catch (const Error& fault) {
+      refusal = fault.where() + ": " + fault.problem();
+    }
+  }
+  bool operator==(const AllPoses&) const = default;
+};
+
+// Reads plain lines apart from the reader, until there are none or one is not plain.
+AllPoses by_lines(const std::string& path, std::size_t& plain) {
+  PoseReader reader(path);
+  AllPoses all;
+  const auto first = reader.next();
+  if (first) all.poses.push_back(told(*first, reader.time(), reader.id(), reader.solids()));
+  std::optional<PoseLines> lines = reader.next_lines();
+  std::string_view left = lines ? std::string_view(lines->text) : std::string_view();
+  while (!left.empty()) {
+    const std::size_t end = left.find('\n');
+    const auto pose = lines->parser.of_plain_line(std::string(left.substr(0, end)));
+    if (!pose) break;
+    all.poses.push_back(told(pose->pose, pose->time, pose->id, pose->solids));
+    left.remove_prefix(end + 1);
+    ++plain;
+  }
+  reader.give_back(left);
+  all.add_all(reader);
+  return all;
+}
+
+TEST(PoseReader, PlainLinesAreReadApartAsTheyAreReadInOrder) {
+  const file::TemporaryFolder folder;
+  const std::string path = folder.path("poses.txt");
+  const std::string pose = "[1,2,3,1,0,0,0]\n";
+  const auto expect_plain = [&](const std::string& text, std::size_t lines) {
+    file::write_all(path, text);
+    PoseReader reader(path);
+    AllPoses in_order;
+    in_order.add_all(reader);
+    std::size_t plain = 0;
+    EXPECT_EQ(by_lines(path, plain), in_order) << text;
+    EXPECT_EQ(plain, lines) << text;
+  };
+  expect_plain(pose + pose + pose, 2);
+  expect_plain(pose + R"({"id": {"b": 1, "a": "#"}, "t": 5, "pose": [1,2,3,1,0,0,0]})" + "\n", 1);
+  expect_plain(pose + R"({"tool": [1,2,3,1,0,0,0], "solids": [[1,2,3,1,0,0,0]]})" + "\n", 1);
+  expect_plain("1 2 3 1 0 0 0\r\n4 5 6 0 1 0 0\r\n[4,5,6,0,1,0,0]\r\n", 2);
+  expect_plain("# t tx ty tz qw qx qy qz\n7 1 2 3 0 1 0 0\n8 1 2 3 0 0 1 0\n", 1);
+  // These need the lines around them, are several poses, none, or end before the line does.
+  expect_plain(pose + pose + "{\n\"pose\":\n[1,2,3,1,0,0,0]\n}\n" + pose, 1);
+  expect_plain(pose + pose + "[[1,2,3,1,0,0,0],[1,2,3,0,1,0,0]]\n" + pose, 1);
+  expect_plain(pose + pose + "# of names: tx ty tz qw qx qy qz\n1 2 3 0 1 0 0\n", 1);
+  expect_plain(pose + "\n" + pose, 0);
+  expect_plain(pose + pose + "[1,2,3,1,0,0,0", 1);
+  expect_plain(pose + "1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n" + pose, 0);
+  expect_plain("[" + pose + "," + pose + "]\n" + pose, 0);
+  // These are refused, with the number of the line.
+  expect_plain(pose + pose + "[1,2,3,\"x\",0,0,0]\n" + pose, 1);
+  expect_plain(pose + pose + "1 2 3 1 0 0 zero\n" + pose, 1);
+  expect_plain(pose + pose + pose + "{\"pose\": [1,2,3,0,0,0,0]}\n", 2);
 }
 
 }  // namespace

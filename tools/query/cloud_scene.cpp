@@ -114,14 +114,25 @@ AskedPose PoseSource::first() {
 
 namespace {
 
-// Throws Error(refused) unless the last pose came with poses of all solids or of none.
+// True if a pose came with poses of all solids or of none.
+bool are_all_or_none(std::size_t given, std::size_t solids) {
+  return given == 0 || given == solids;
+}
+
+// Throws Error(refused) unless it is so of the last pose.
 void check_solids(const PoseReader& reader, std::size_t solids) {
   const std::size_t given = reader.solids().size();
-  if (given == 0 || given == solids) return;
+  if (are_all_or_none(given, solids)) return;
   throw Error(ErrorKind::refused, misfit_of_solids(given, solids), reader.place(), kSolidsAdvice);
 }
 
 }  // namespace
+
+std::optional<AskedPose> asked_on(const std::string& line, std::size_t solids, PoseParser& parser) {
+  std::optional<ToldPose> told = parser.of_plain_line(line);
+  if (!told || !are_all_or_none(told->solids.size(), solids)) return std::nullopt;
+  return AskedPose{told->pose, std::move(told->id), std::move(told->solids)};
+}
 
 std::optional<AskedPose> PoseSource::next_one() {
   if (pending_) return std::exchange(pending_, std::nullopt);
@@ -143,13 +154,40 @@ std::vector<AskedPose> PoseSource::next(std::size_t most) {
   return poses;
 }
 
+std::vector<AskedPose> PoseSource::next_together() {
+  constexpr std::size_t kMost = 1024;
+  if (unread_) std::rethrow_exception(std::exchange(unread_, nullptr));
+  std::vector<AskedPose> poses;
+  try {
+    do {
+      std::optional<AskedPose> pose = next_one();
+      if (!pose) break;
+      poses.push_back(std::move(*pose));
+    } while (poses.size() < kMost && reader_ && reader_->has_more());
+  } catch (...) {
+    if (poses.empty()) throw;
+    unread_ = std::current_exception();
+  }
+  return poses;
+}
+
+std::optional<PoseLines> PoseSource::next_lines() {
+  if (pending_ || !reader_ || !has_lines_) return std::nullopt;
+  return reader_->next_lines();
+}
+
+void PoseSource::give_back(std::string_view lines) {
+  reader_->give_back(lines);
+  has_lines_ = false;
+}
+
 void PoseSource::pass_over(std::size_t poses) {
   for (std::size_t k = 0; k < poses; ++k)
     if (!next_one()) refuse("there are fewer poses than lines of the run before");
 }
 
 double PoseSource::largest_deviation() const {
-  return reader_ ? reader_->largest_deviation() : deviation_;
+  return reader_ ? std::max(deviation_, reader_->largest_deviation()) : deviation_;
 }
 
 }  // namespace vpm::tools

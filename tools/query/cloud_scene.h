@@ -4,9 +4,12 @@
 #include <vpm/scene.h>
 #include <vpm/setup_check.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
@@ -62,6 +65,10 @@ class CloudScene {
 // Returns the job of each pose for the first tool, which refers to what was asked.
 std::vector<Job> jobs_of(const std::vector<AskedPose>& asked);
 
+// Returns what a plain line of poses asks; empty for others, and unless it has poses of all solids
+// or of none.
+std::optional<AskedPose> asked_on(const std::string& line, std::size_t solids, PoseParser& parser);
+
 // Pose of --pose, or those of --poses.
 class PoseSource {
  public:
@@ -73,10 +80,19 @@ class PoseSource {
   AskedPose first();
   // Returns the next poses, `most` of them or as many as are left. Throws what PoseReader throws.
   std::vector<AskedPose> next(std::size_t most);
+  // Returns the next pose, and those after it in the same list or array, up to one that cannot be
+  // read: the next call throws why.
+  std::vector<AskedPose> next_together();
+  // Return the next lines of poses and take them back, as PoseReader does. There are none any more
+  // after some were given back.
+  std::optional<PoseLines> next_lines();
+  void give_back(std::string_view lines);
   // Passes over poses, whose lines another run wrote. Throws Error(refused) if there are fewer.
   void pass_over(std::size_t poses);
-  // Returns the largest deviation of a rotation before it was normalised.
+  // Returns the largest deviation of a rotation before it was normalised, also of poses that others
+  // read.
   double largest_deviation() const;
+  void add_deviation(double deviation) { deviation_ = std::max(deviation_, deviation); }
 
  private:
   std::optional<AskedPose> next_one();
@@ -85,6 +101,8 @@ class PoseSource {
   std::optional<AskedPose>
       pending_;  // pose that was parsed or read, and not yet returned by next()
   double deviation_ = 0;
+  std::exception_ptr unread_;  // of a pose after those that were returned
+  bool has_lines_ = true;      // none was given back
   std::optional<PoseReader> reader_;
 };
 

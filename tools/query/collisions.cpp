@@ -24,16 +24,17 @@ const char* text_of(Collides found) {
   return found == Collides::yes ? "yes" : found == Collides::no ? "no" : "unknown";
 }
 
-void Collisions::answer(const Result& result, nlohmann::ordered_json& line) {
-  if (is_asked_) {
-    const Collides found = collides(result, unseen_limit_);
-    line["collides"] = text_of(found);
-    count(found);
-  }
-  if (!fail_above_) return;
+std::string Collisions::show(const Result& result, nlohmann::ordered_json& line) const {
+  if (is_asked_) line["collides"] = text_of(collides(result, unseen_limit_));
+  if (!fail_above_) return "";
   const bool is_above = result.volume > *fail_above_;
   line["above"] = is_above;
-  if (is_above && count_above_++ < kMostNamed) above_.push_back(named(line, *fail_above_));
+  return is_above ? named(line, *fail_above_) : "";
+}
+
+void Collisions::count(const Result& result, const std::string& above) {
+  if (is_asked_) count(collides(result, unseen_limit_));
+  if (!above.empty() && count_above_++ < kMostNamed) above_.push_back(above);
 }
 
 void Collisions::count(Collides found) {

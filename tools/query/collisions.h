@@ -22,8 +22,16 @@ class Collisions {
   Collisions(bool is_asked, double unseen_limit, std::optional<double> fail_above)
       : is_asked_(is_asked), unseen_limit_(unseen_limit), fail_above_(fail_above) {}
 
-  // Adds the fields `collides` and `above`, if they are asked, to the line of results of one pose.
-  void answer(const Result& result, nlohmann::ordered_json& line);
+  // Adds the fields `collides` and `above`, if they are asked, to the line of results of one pose,
+  // and takes it into account.
+  void answer(const Result& result, nlohmann::ordered_json& line) {
+    count(result, show(result, line));
+  }
+
+  // The two parts of answer(). The first one may be called by many threads at once, and returns a
+  // sentence for a line above the limit, "" for others; the second takes it.
+  std::string show(const Result& result, nlohmann::ordered_json& line) const;
+  void count(const Result& result, const std::string& above);
   // Takes an answer into account for exit_code(), of a pose whose line says `collides` already.
   void count(Collides found);
 

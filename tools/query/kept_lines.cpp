@@ -134,8 +134,7 @@ void KeptLines::open() {
 
 // Keeps the whole lines that are there, if they are of the same run.
 void KeptLines::go_on(const Json& run) {
-  const bool is_csv = file::in_lower_case(fs::path(target_).extension().string()) == ".csv";
-  const WholeLines whole = whole_lines(descriptor_, is_csv);
+  const WholeLines whole = whole_lines(descriptor_, is_csv());
   if (whole.count == 0) return;
   const std::string names = differences(told_in(told_), run);
   if (!names.empty())
@@ -146,14 +145,22 @@ void KeptLines::go_on(const Json& run) {
   lines_ = whole.count;
 }
 
-void KeptLines::append(std::string_view line) {
-  while (!line.empty()) {
-    const ssize_t size = ::write(descriptor_, line.data(), line.size());
+void KeptLines::append(std::string_view text, std::size_t lines) {
+  while (!text.empty()) {
+    const ssize_t size = ::write(descriptor_, text.data(), text.size());
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0) cannot_write(target_, errno);
-    line.remove_prefix(static_cast<std::size_t>(size));
+    if (size < 0) {
+      const int fault = errno;
+      lines_ = whole_lines(descriptor_, is_csv()).count;  // some of these may be there
+      cannot_write(target_, fault);
+    }
+    text.remove_prefix(static_cast<std::size_t>(size));
   }
-  ++lines_;
+  lines_ += lines;
+}
+
+bool KeptLines::is_csv() const {
+  return file::in_lower_case(fs::path(target_).extension().string()) == ".csv";
 }
 
 void KeptLines::finish() {

@@ -33,13 +33,14 @@ class KeptLines {
 
   // Returns the number of lines that are there.
   std::size_t lines() const { return lines_; }
-  // Writes a whole line, with its end.
-  void append(std::string_view line);
+  // Writes whole lines, with their ends.
+  void append(std::string_view text, std::size_t lines);
   // Gives the file its name.
   void finish();
 
  private:
   void open();
+  bool is_csv() const;
   void go_on(const nlohmann::json& run);
 
   std::string target_, part_, told_;

@@ -1,6 +1,7 @@
 // vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out; which parts
 // of an assembly share volume.
 
+#include <ios>
 #include <string>
 
 #include "tools/query/arguments.h"
@@ -48,6 +49,7 @@ void run(Program& program, const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
+  std::ios::sync_with_stdio(false);  // so that standard input is read in blocks
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   declare(program.app(), arguments);

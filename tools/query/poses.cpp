@@ -2,6 +2,9 @@
 #include <vpm/device.h>
 
 #include <exception>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/common/recorded_frames.h"
@@ -27,7 +30,10 @@ class PoseQueries {
         query_(setup.tools.front(), setup.options, setup.level, scene.scene(), first_pose) {}
 
   void ask(const AskedPose& asked) {
-    write(answer(query_, asked_, asked));
+    std::string line;
+    AnsweredPose answered = answer(query_, asked_, asked, line);
+    output_.append(line, 1);
+    note(std::move(answered));
     if (setup_.view) setup_.view->add({asked.pose, 0, asked.solids}, last_result_, query_);
   }
 
@@ -35,31 +41,20 @@ class PoseQueries {
     std::vector<Result> results(asked.size());
     const std::vector<Job> jobs = jobs_of(asked);
     query_.run(scene_.scene(), jobs, results);
-    for (std::size_t k = 0; k < asked.size(); ++k)
-      write(answer_of(query_, asked_, asked[k], results[k]));
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      std::string line;
+      AnsweredPose answered = answer_of(query_, asked_, asked[k], results[k], line);
+      output_.append(line, 1);
+      note(std::move(answered));
+    }
     if (setup_.view) setup_.view->add_batch(query_, scene_.scene(), jobs);
   }
 
-  // Reads all poses, answers each on one of several threads, and writes the answers in order.
+  // Reads all poses, answers them on several threads, and writes the answers in order. The threads
+  // read plain lines too.
   void ask_by_threads(PoseSource& source, int threads) {
-    std::vector<LevelQuery> queries;
-    for (int k = 0; k < threads; ++k) queries.push_back(query_.another());
-    const std::size_t first = asked_;
-    PoseSpread spread(
-        queries.size(),
-        [&](std::size_t thread, std::size_t index, const AskedPose& asked) {
-          return answer(queries[thread], first + index, asked);
-        },
-        [&](const AnsweredPose& answered) { write(answered); });
-    std::exception_ptr unread;
-    try {
-      for (auto poses = source.next(1); !poses.empty(); poses = source.next(1))
-        spread.add(std::move(poses.front()));
-    } catch (...) {
-      unread = std::current_exception();
+    while (!ask_until_unclear(source, threads)) {
     }
-    spread.finish();  // what was read is answered first
-    if (unread) std::rethrow_exception(unread);
   }
 
   // Queries the last pose again, where its states of spheres are not those of the query.
@@ -73,42 +68,123 @@ class PoseQueries {
   const Pose& last() const { return last_.pose; }
 
  private:
-  // Asks the `index`-th pose. Threads may do so at once, each with its query.
-  AnsweredPose answer(LevelQuery& query, std::size_t index, const AskedPose& asked) const {
-    if (setup_.arguments.collides_only) return hit_of(query, index, asked);
-    return answer_of(query, index, asked, query.run(scene_.scene(), asked.pose, 0, asked.solids));
+  // Where a thread meets a line of which it alone cannot tell what it asks.
+  struct UnclearLine {};
+
+  // Asks the poses of the source. Ends before a line that is unclear, and returns false.
+  bool ask_until_unclear(PoseSource& source, int threads) {
+    PoseSpread spread(
+        static_cast<std::size_t>(threads),
+        [&] {
+          const auto query = std::make_shared<LevelQuery>(query_.another());
+          return [this, query](const PoseChunk& chunk) { return answer_chunk(*query, chunk); };
+        },
+        [&](AnsweredChunk answered) { take(std::move(answered), source); });
+    try {
+      const std::exception_ptr unread = add_all(source, spread);
+      spread.finish();  // what was read is answered first
+      if (unread) std::rethrow_exception(unread);
+    } catch (const UnclearLine&) {
+      std::string left;
+      for (const PoseChunk& chunk : spread.stop()) left += chunk.lines.text;
+      source.give_back(std::string_view(left).substr(read_bytes_));
+      return false;
+    }
+    return true;
   }
-  AnsweredPose hit_of(LevelQuery& query, std::size_t index, const AskedPose& asked) const {
-    const Collides found = query.collides(scene_.scene(), asked.pose,
-                                          setup_.collisions.unseen_limit(), 0, asked.solids);
-    return {asked,
-            {},
-            found,
-            collision_line(index, asked.id, text_of(found), query.level(), setup_.options.measure,
-                           query.reason()),
-            query.seconds()};
+  // Adds all poses; returns why the last one cannot be read, if it is so.
+  std::exception_ptr add_all(PoseSource& source, PoseSpread& spread) {
+    std::size_t next = asked_;
+    bool are_lines_out = false;
+    const auto add = [&](const PoseChunk& chunk) {
+      next += chunk.count();
+      spread.add(chunk);
+    };
+    try {
+      for (;;) {
+        if (std::optional<PoseLines> lines = source.next_lines()) {
+          add({next, {}, std::move(*lines)});
+          are_lines_out = true;
+          continue;
+        }
+        // What comes may belong to lines that are out, unless these are clear.
+        if (std::exchange(are_lines_out, false)) spread.finish();
+        std::vector<AskedPose> poses = source.next_together();
+        if (poses.empty()) return nullptr;
+        add({next, std::move(poses), {}});
+      }
+    } catch (const UnclearLine&) {
+      throw;
+    } catch (...) {
+      return std::current_exception();
+    }
   }
-  AnsweredPose answer_of(const LevelQuery& query, std::size_t index, const AskedPose& asked,
-                         const Result& result) const {
-    AnsweredPose answered{asked,
-                          result,
-                          {},
-                          result_line(index, asked.id, result, query.level(),
-                                      setup_.options.measure, query.reason(), {}),
-                          query.seconds()};
-    if (setup_.arguments.bodies) answered.line["bodies"] = bodies_of(query.parts());
-    if (setup_.arguments.contacts > 0)
-      answered.line["contacts"] = contacts_of_pose(query.contacts());
+
+  // Asks the poses of a chunk. Threads may do so at once, each with its query.
+  AnsweredChunk answer_chunk(LevelQuery& query, const PoseChunk& chunk) const {
+    AnsweredChunk answered;
+    PoseParser parser = chunk.lines.parser;
+    const auto add = [&](const AskedPose& asked) {
+      const std::size_t index = chunk.first + answered.poses.size();
+      answered.poses.push_back(answer(query, index, asked, answered.text));
+    };
+    try {
+      for (const AskedPose& asked : chunk.poses) add(asked);
+      while (answered.read_bytes < chunk.lines.text.size()) {
+        const std::size_t begin = answered.read_bytes, end = chunk.lines.text.find('\n', begin);
+        const std::optional<AskedPose> asked =
+            asked_on(chunk.lines.text.substr(begin, end - begin), setup_.solids.size(), parser);
+        if (!asked) throw UnclearLine();
+        add(*asked);
+        answered.read_bytes = end + 1;
+      }
+    } catch (...) {
+      answered.failure = std::current_exception();
+    }
+    answered.largest_deviation = parser.largest_deviation();
     return answered;
   }
-  void write(AnsweredPose answered) {
+  void take(AnsweredChunk answered, PoseSource& source) {
+    if (!answered.poses.empty()) output_.append(answered.text, answered.poses.size());
+    for (AnsweredPose& pose : answered.poses) note(std::move(pose));
+    source.add_deviation(answered.largest_deviation);
+    read_bytes_ = answered.read_bytes;
+    if (answered.failure) std::rethrow_exception(answered.failure);
+  }
+
+  // Asks the `index`-th pose, and adds its line. Threads may do so at once, each with its query.
+  AnsweredPose answer(LevelQuery& query, std::size_t index, const AskedPose& asked,
+                      std::string& text) const {
+    if (setup_.arguments.collides_only) return hit_of(query, index, asked, text);
+    return answer_of(query, index, asked, query.run(scene_.scene(), asked.pose, 0, asked.solids),
+                     text);
+  }
+  AnsweredPose hit_of(LevelQuery& query, std::size_t index, const AskedPose& asked,
+                      std::string& text) const {
+    const Collides found = query.collides(scene_.scene(), asked.pose,
+                                          setup_.collisions.unseen_limit(), 0, asked.solids);
+    text += output_.text_of(collision_line(index, asked.id, text_of(found), query.level(),
+                                           setup_.options.measure, query.reason()));
+    return {asked, {}, found, "", query.seconds()};
+  }
+  AnsweredPose answer_of(const LevelQuery& query, std::size_t index, const AskedPose& asked,
+                         const Result& result, std::string& text) const {
+    nlohmann::ordered_json line = result_line(index, asked.id, result, query.level(),
+                                              setup_.options.measure, query.reason(), {});
+    if (setup_.arguments.bodies) line["bodies"] = bodies_of(query.parts());
+    if (setup_.arguments.contacts > 0) line["contacts"] = contacts_of_pose(query.contacts());
+    std::string above = setup_.collisions.show(result, line);
+    text += output_.text_of(line);
+    return {asked, result, {}, std::move(above), query.seconds()};
+  }
+  // Takes into account what was written.
+  void note(AnsweredPose answered) {
     if (answered.collides) {
       setup_.collisions.count(*answered.collides);
     } else {
       scene_.see(answered.asked.pose, 0, answered.result);
-      setup_.collisions.answer(answered.result, answered.line);
+      setup_.collisions.count(answered.result, answered.above);
     }
-    output_.append(answered.line);
     seconds_.push_back(answered.seconds);
     last_result_ = answered.result;
     last_ = std::move(answered.asked);
@@ -119,6 +195,7 @@ class PoseQueries {
   CloudScene& scene_;
   ResultOutput& output_;
   std::size_t asked_;
+  std::size_t read_bytes_ = 0;  // of the lines of the chunk that was taken last
   LevelQuery query_;
   std::vector<double> seconds_;
   AskedPose last_;

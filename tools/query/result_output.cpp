@@ -200,13 +200,17 @@ std::size_t ResultOutput::pass_over(std::size_t lines) {
   return poses;
 }
 
-void ResultOutput::append(const nlohmann::ordered_json& line) {
+std::string ResultOutput::text_of(const nlohmann::ordered_json& line) const {
+  return text_of_line(line, columns_) + "\n";
+}
+
+void ResultOutput::append(const std::string& text, std::size_t lines) {
   if (there_ > 0) {
     --there_;
     return;
   }
   write_names();
-  write(text_of_line(line, columns_));
+  write(text, lines);
 }
 
 void ResultOutput::finish() {
@@ -216,11 +220,11 @@ void ResultOutput::finish() {
 }
 
 void ResultOutput::write_names() {
-  if (!names_.empty()) write(std::exchange(names_, {}));
+  if (!names_.empty()) write(std::exchange(names_, {}) + "\n", 1);
 }
 
-void ResultOutput::write(const std::string& line) {
-  kept_ ? kept_->append(line + "\n") : straight_->append(line + "\n");
+void ResultOutput::write(const std::string& text, std::size_t lines) {
+  kept_ ? kept_->append(text, lines) : straight_->append(text);
 }
 
 }  // namespace vpm::tools

@@ -46,12 +46,18 @@ class ResultOutput {
   // otherwise append() passes over the lines that are there.
   std::size_t pass_over(std::size_t lines);
   // Writes a line at once. File names that are not UTF-8 are escaped in JSON.
-  void append(const nlohmann::ordered_json& line);
+  void append(const nlohmann::ordered_json& line) { append(text_of(line), 1); }
+
+  // The two parts of append(): the first may be called by many threads at once, and returns the
+  // line as it is written, with its end; the second writes the text of whole lines, several only
+  // where none is passed over.
+  std::string text_of(const nlohmann::ordered_json& line) const;
+  void append(const std::string& text, std::size_t lines);
   void finish();
 
  private:
   void write_names();
-  void write(const std::string& line);
+  void write(const std::string& text, std::size_t lines);
 
   const Program& program_;
   const std::string& path_;
