@@ -44,14 +44,16 @@ struct Spread {
     }
     return answered;
   }
-  void take(const AnsweredChunk& answered) {
+  void take(const std::vector<AnsweredChunk>& chunks) {
     EXPECT_EQ(taking.fetch_add(1), 0);
-    for (const AnsweredPose& pose : answered.poses) {
-      if (taken.size() == takes_at_most) throw std::runtime_error("no room");
-      taken.push_back(pose.result.volume);
+    for (const AnsweredChunk& answered : chunks) {
+      EXPECT_TRUE(!answered.failure || &answered == &chunks.back());
+      for (const AnsweredPose& pose : answered.poses) {
+        if (taken.size() == takes_at_most) throw std::runtime_error("no room");
+        taken.push_back(pose.result.volume);
+      }
     }
     taking.fetch_sub(1);
-    if (answered.failure) std::rethrow_exception(answered.failure);
   }
 
   // Adds all poses, some at once. Returns the message of the failure, or "".
@@ -61,7 +63,7 @@ struct Spread {
     try {
       PoseSpread spread(
           threads, [&] { return [&](const PoseChunk& chunk) { return answer(chunk); }; },
-          [&](const AnsweredChunk& answered) { take(answered); });
+          [&](const std::vector<AnsweredChunk>& answered) { take(answered); });
       for (std::size_t first = 0; first < kPoses; first += 20) {
         PoseChunk chunk{first};
         for (std::size_t k = first; k < first + 20; ++k)
@@ -110,7 +112,7 @@ TEST(PoseSpread, TellsThatAnswersCannotBeTaken) {
 TEST(PoseSpread, TellsThatAThreadCannotBegin) {
   PoseSpread spread(
       3, []() -> PoseSpread::Answer { throw std::runtime_error("no memory"); },
-      [](const AnsweredChunk&) {});
+      [](const std::vector<AnsweredChunk>&) {});
   EXPECT_THROW(
       {
         spread.add({0, std::vector<AskedPose>(5)});
@@ -130,7 +132,7 @@ TEST(PoseSpread, EndsWithPosesThatNobodyWaitsFor) {
             return AnsweredChunk{};
           };
         },
-        [](const AnsweredChunk&) {});
+        [](const std::vector<AnsweredChunk>&) {});
     for (int k = 0; k < 100; ++k) spread.add({0, std::vector<AskedPose>(1)});
   }
   EXPECT_LE(answered, 100);
@@ -148,9 +150,9 @@ TEST(PoseSpread, LeavesTheLinesThatWereNotTaken) {
   };
   PoseSpread spread(
       3, [&] { return answer; },
-      [&](const AnsweredChunk& answered) {
-        if (answered.failure) std::rethrow_exception(answered.failure);
-        taken += answered.text;
+      [&](const std::vector<AnsweredChunk>& chunks) {
+        for (const AnsweredChunk& answered : chunks)
+          if (!answered.failure) taken += answered.text;
       });
   const auto add = [&](std::size_t first) {
     PoseChunk chunk{first};

@@ -50,9 +50,10 @@ class PoseSpread {
  public:
   // Answers a chunk; called by the thread that it was made on.
   using Answer = std::function<AnsweredChunk(const PoseChunk& chunk)>;
-  // Takes the answers in order, each as soon as it and those before it are there; called by one
-  // thread at a time, whichever has answered last. What it throws ends the spread.
-  using Take = std::function<void(AnsweredChunk answered)>;
+  // Takes answers in order, all that are there with those before them; called by one thread at a
+  // time, whichever has answered last. Only the last of them may have a failure, which ends the
+  // spread, as does what this throws.
+  using Take = std::function<void(std::vector<AnsweredChunk> answered)>;
 
   // Starts the threads. Each calls `make_answer` first, so that what it answers with lies in memory
   // of its own.
@@ -62,20 +63,20 @@ class PoseSpread {
   PoseSpread(const PoseSpread&) = delete;
   PoseSpread& operator=(const PoseSpread&) = delete;
 
-  // Adds poses; waits while many are not yet taken. They are cut into chunks that take about a
-  // fifth of a millisecond, as those before tell, and less where threads would be idle. Throws what
+  // Adds poses; waits while many are not yet taken. They are cut into chunks that take about half
+  // a millisecond, as those before tell, and less where threads would be idle. Throws what
   // the first chunk that failed threw, as it was answered or taken; these poses are added even so.
   void add(const PoseChunk& poses);
   // Waits until all are taken. Throws the same.
   void finish();
-  // Ends the threads. Returns all that was added and not taken, in order.
+  // Ends the threads. Returns all that was added and not taken, in order; first the chunk that
+  // failed.
   std::vector<PoseChunk> stop();
 
  private:
   struct Slot {
     PoseChunk chunk;
     AnsweredChunk answered;
-    std::exception_ptr failure;
     bool is_done = false;
   };
   static constexpr std::size_t kWaiting = 256;  // most poses for each thread that are not yet taken

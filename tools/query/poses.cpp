@@ -79,7 +79,7 @@ class PoseQueries {
           const auto query = std::make_shared<LevelQuery>(query_.another());
           return [this, query](const PoseChunk& chunk) { return answer_chunk(*query, chunk); };
         },
-        [&](AnsweredChunk answered) { take(std::move(answered), source); });
+        [&](std::vector<AnsweredChunk> answered) { take(std::move(answered), source); });
     try {
       const std::exception_ptr unread = add_all(source, spread);
       spread.finish();  // what was read is answered first
@@ -144,12 +144,19 @@ class PoseQueries {
     answered.largest_deviation = parser.largest_deviation();
     return answered;
   }
-  void take(AnsweredChunk answered, PoseSource& source) {
-    if (!answered.poses.empty()) output_.append(answered.text, answered.poses.size());
-    for (AnsweredPose& pose : answered.poses) note(std::move(pose));
-    source.add_deviation(answered.largest_deviation);
-    read_bytes_ = answered.read_bytes;
-    if (answered.failure) std::rethrow_exception(answered.failure);
+  void take(std::vector<AnsweredChunk> answered, PoseSource& source) {
+    std::string text;
+    std::size_t lines = 0;
+    for (const AnsweredChunk& chunk : answered) {
+      text += chunk.text;
+      lines += chunk.poses.size();
+    }
+    if (lines > 0) output_.append(text, lines);
+    for (AnsweredChunk& chunk : answered) {
+      for (AnsweredPose& pose : chunk.poses) note(std::move(pose));
+      source.add_deviation(chunk.largest_deviation);
+      read_bytes_ = chunk.read_bytes;
+    }
   }
 
   // Asks the `index`-th pose, and adds its line. Threads may do so at once, each with its query.
