@@ -344,6 +344,19 @@ def pairs(report):
                   "5 %: with force", "worst pose", "30 %: with force", "both, MB"], rows)
 
 
+def threads(report):
+    kinds = {"clear": "poses that touch nothing", "deep": "poses in the surface"}
+    of = {(r["poses"], r["threads"]): r for r in report["results"]}
+    rows = []
+    for count in sorted({count for _, count in of}):
+        row = [count]
+        for kind in kinds:
+            rate, one = of[kind, count]["poses_per_second"], of[kind, 1]["poses_per_second"]
+            row += [thousands(round(rate)), f"{rate / one / count:.2f}"]
+        rows.append(row)
+    return table(["threads, each on a core"] + [head for name in kinds.values() for head in (f"{name}, a second", "of N times one thread's")], rows)
+
+
 def fuzz(report):
     rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
             for name, t in report["targets"].items()]
@@ -364,7 +377,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
              "fuzz": (fuzz, "fuzz")}}
 
 

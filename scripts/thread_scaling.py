@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Measures how many poses a second `vpm-query --threads N` answers with 1, 2, 4 … threads, each on a core of its own.
+
+    thread_scaling.py BIN COMMIT > tests/results/threads.json
+
+BIN is the folder of the programs and of make-example, COMMIT what they were built of. The scene and the tool are those of the demo.
+"clear" poses touch nothing, "deep" ones are those of the demo's path that do. The time of a run with one pose, which is that of
+reading the tool and preparing the scene, is taken off. Each figure is the median of three rounds, which measure all in turn. Fails if
+the answers are not the same bytes for any number of threads.
+"""
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROUNDS = 3
+CLEAR, DEEP = 400_000, 30_000
+
+
+def make_inputs(run):
+    run("make-example", ".")
+    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", "1000", "--quiet")
+    run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--quiet")
+    run("vpm-normals", "depth.png", "-o", "scene.vpmc", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000", "--quiet")
+    path = pathlib.Path("poses.jsonl").read_text().splitlines()
+    first_deep = len(path) // 3
+    clear, deep = path[:9], path[first_deep:]
+    for name, poses in (("one", path[:1]), ("clear", [clear[k % len(clear)] for k in range(CLEAR)]),
+                        ("deep", [deep[k % len(deep)] for k in range(DEEP)])):
+        pathlib.Path(name).write_text("\n".join(poses) + "\n")
+
+
+def seconds_of(run, poses, threads):
+    begin = time.perf_counter()
+    run("taskset", "-c", f"0-{threads - 1}", "vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", poses,
+        "--threads", threads, "--device", "cpu", "--quiet", "-o", f"{poses}.{threads}", "--force")
+    return time.perf_counter() - begin
+
+
+def measured(run):
+    counts = [2 ** k for k in range(10) if 2 ** k <= len(os.sched_getaffinity(0))]
+    seconds = {}
+    for _ in range(ROUNDS):
+        for poses in ("one", "clear", "deep"):
+            for threads in counts:
+                seconds.setdefault((poses, threads), []).append(seconds_of(run, poses, threads))
+                if pathlib.Path(f"{poses}.{threads}").read_bytes() != pathlib.Path(f"{poses}.1").read_bytes():
+                    sys.exit(f"{threads} threads answer otherwise than one")
+    for poses, count in (("clear", CLEAR), ("deep", DEEP)):
+        for threads in counts:
+            start = statistics.median(seconds["one", threads])
+            rates = sorted(count / (s - start) for s in seconds[poses, threads])
+            yield {"poses": poses, "threads": threads, "poses_per_second": statistics.median(rates), "range": [rates[0], rates[-1]]}
+
+
+def processor():
+    return next(line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    programs = str(pathlib.Path(sys.argv[1]).resolve())
+    environment = dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}")
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        run = lambda *command: subprocess.run([str(word) for word in command], check=True, env=environment, stdout=sys.stderr)
+        make_inputs(run)
+        results = list(measured(run))
+        os.chdir("/")
+    json.dump({"command": "scripts/thread_scaling.py BIN COMMIT", "commit": sys.argv[2],
+               "machine": {"cores": len(os.sched_getaffinity(0)), "processor": processor()}, "results": results}, sys.stdout, indent=1)
+    print()
+
+
+if __name__ == "__main__":
+    main()
