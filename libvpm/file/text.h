@@ -98,9 +98,9 @@ class LineStream {
   std::optional<std::string> next();
 
   // Returns the next whole lines that are there, with their ends. Returns "" where next() is to be
-  // asked instead: before a line that does not end in LF or CRLF, or not soon, and at the end. Of a
-  // stream that one `may_wait` for, such as a pipe, returns lines only if there is more
-  // after them, so that the next call need not wait.
+  // asked instead: before a line that does not end in LF or CRLF, or is longer than a block, and at
+  // the end. Of a stream that one `may_wait` for, such as a pipe, returns lines only if there is
+  // more after them, so that the next call need not wait.
   std::string next_lines(bool may_wait);
   // Takes back the last lines that next_lines() returned.
   void give_back(std::string_view lines);

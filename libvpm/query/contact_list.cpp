@@ -18,7 +18,10 @@ struct WrenchSteps {
   WrenchSteps(double volume, double stiffness, double tool_radius)
       : force(step_of(stiffness * volume)), torque(step_of(stiffness * volume * tool_radius)) {}
 
-  static double step_of(double most) { return std::ldexp(1.0, std::ilogb(most) - kBits); }
+  static double step_of(double most) {
+    constexpr double kLeast = 0x1p-1000;  // whose step is a number above 0
+    return std::ldexp(1.0, std::ilogb(std::max(most, kLeast)) - kBits);
+  }
   static double rounded(double value, double step) {
     return std::nearbyint(value / step) * step + 0.0;  // -0 is 0
   }

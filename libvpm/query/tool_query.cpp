@@ -266,8 +266,8 @@ ToolQuery& ToolQuery::of_thread(std::size_t thread) {
   return *query;
 }
 
-// Spreads jobs over the threads, which take one after another, unless these are fewer than the
-// threads, which then share each, or follow each other.
+// Each thread takes one job after another. Where there are fewer jobs than threads, or poses are
+// coherent, jobs are done in order, and all threads share each.
 void ToolQuery::run_on_cpu(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
                            std::span<const Job> jobs, std::span<Result> results,
                            std::span<const PlacedSolid> solids) {

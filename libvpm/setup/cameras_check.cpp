@@ -109,11 +109,9 @@ Remark nothing_in_common(bool is_warning) {
           "`import_cloud` `camera_pose` from camera to world, in metres, and `depth_scale` right?"};
 }
 
-bool has_no_pose(const Pose& pose) {
-  const Pose none;
-  const Rotation &own = pose.rotation, &other = none.rotation;
-  return pose.translation == none.translation && own.row0 == other.row0 && own.row1 == other.row1 &&
-         own.row2 == other.row2;
+bool is_same(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.row0 == b.rotation.row0 &&
+         a.rotation.row1 == b.rotation.row1 && a.rotation.row2 == b.rotation.row2;
 }
 
 // Returns a camera that shows no surface which another one shows, too. Of several, one without a
@@ -125,15 +123,15 @@ std::optional<DoubtedCamera> lone_camera(const std::vector<ComparedCamera>& came
   const std::size_t count = cameras.size();
   bool do_others_share = false;  // but for an image that is given twice
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    do_others_share |= pairs[k].same >= kFew && cameras[k / count].to_world.translation !=
-                                                    cameras[k % count].to_world.translation;
+    do_others_share |=
+        pairs[k].same >= kFew && !is_same(cameras[k / count].to_world, cameras[k % count].to_world);
   std::optional<DoubtedCamera> found;
   std::pair<bool, double> least;
   for (std::size_t i = 0; count > 1 && i < count; ++i) {
     Shared all;
     for (std::size_t j = 0; j < count; ++j) all.add(pairs[i * count + j]);
     const bool is_hidden = all.hidden >= kFew;
-    const std::pair key(!has_no_pose(cameras[i].to_world), cameras[i].depth);
+    const std::pair key(!is_same(cameras[i].to_world, Pose{}), cameras[i].depth);
     if (!(cameras[i].depth > 0) || all.same >= kFew || (is_hidden && !do_others_share) ||
         (found && least <= key))
       continue;

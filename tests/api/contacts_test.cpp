@@ -147,7 +147,7 @@ TEST_F(Contacts, AddUpWhateverTheirNumberAndOrder) {
   }
 }
 
-// Along a path that crosses a ledge the contact's quantities move by steps as small as the path's.
+// Along a path between two walls the contact's quantities move by steps as small as the path's.
 TEST_F(Contacts, MoveContinuously) {
   vpm::Query query(tool_, {.contacts = 4});
   const vpm::Scene scene({wall(.015, false), wall(.025, true)});
@@ -167,7 +167,7 @@ TEST_F(Contacts, MoveContinuously) {
   }
 }
 
-TEST_F(Contacts, OfTheFinestPoseAndLevelAreThoseOfTheQuery) {
+TEST_F(Contacts, OfALevelQueryAndOfAnotherQueryAreTheSame) {
   const vpm::Scene scene({wall(.02, false), wall(.03, true)});
   vpm::Query query(tool_, {.contacts = 5});
   vpm::LevelQuery by_level(tool_, {.contacts = 5}, {}, scene, Pose{});

@@ -98,7 +98,7 @@ TEST_F(CellContacts, OfOneWallAreOne) {
       }
 }
 
-// In whatever it is, and whatever the number of threads and the order of bodies.
+// Neither the number of threads nor the order of bodies changes a bit.
 TEST_F(CellContacts, AddUpInBits) {
   const std::vector<AnyBody> bodies{AnyBody(ledges()), AnyBody(see(synthetic::make_scene("ball"))),
                                     AnyBody(without_camera(see(synthetic::make_scene("step"))))};
@@ -117,7 +117,7 @@ TEST_F(CellContacts, AddUpInBits) {
     EXPECT_LE(few.contacts().size(), 2U);
     set_thread_count(3);
     query_.run(bodies, pose);
-    set_thread_count(1);
+    set_thread_count(0);
     EXPECT_EQ(query_.contacts(), contacts);
     EXPECT_EQ(query_.run(std::vector<AnyBody>{bodies[2], bodies[0], bodies[1]}, pose), whole);
     std::vector<Contact> turned = query_.contacts();
@@ -146,7 +146,7 @@ TEST_F(CellContacts, MoveContinuously) {
   }
 }
 
-// Those of a wall on both sides: a tool between two bodies, seen from opposite sides.
+// Of two bodies that are alike, the first comes first.
 TEST_F(CellContacts, TellWhichBodyPushes) {
   const Cloud wall = see(synthetic::make_scene("wall"));
   const std::vector<AnyBody> bodies{AnyBody(wall), AnyBody(wall)};

@@ -129,13 +129,14 @@ TEST(PoseSpread, EndsWithPosesThatNobodyWaitsFor) {
         [&] {
           return [&](const PoseChunk& chunk) {
             answered += chunk.count();
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
             return AnsweredChunk{};
           };
         },
         [](const std::vector<AnsweredChunk>&) {});
     for (int k = 0; k < 100; ++k) spread.add({0, std::vector<AskedPose>(1)});
   }
-  EXPECT_LE(answered, 100);
+  EXPECT_LT(answered, 100);
 }
 
 // Whatever fails, each line is either taken or left.

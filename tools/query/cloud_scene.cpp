@@ -172,7 +172,7 @@ std::vector<AskedPose> PoseSource::next_together() {
 }
 
 std::optional<PoseLines> PoseSource::next_lines() {
-  if (pending_ || !reader_ || !has_lines_) return std::nullopt;
+  if (unread_ || pending_ || !reader_ || !has_lines_) return std::nullopt;
   return reader_->next_lines();
 }
 

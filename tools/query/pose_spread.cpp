@@ -149,6 +149,12 @@ void PoseSpread::take_those_ready(std::unique_lock<std::mutex>& lock) {
   while (!failure_ && !slots_.empty() && slots_.front().is_done) {
     std::vector<AnsweredChunk> answered;
     std::exception_ptr failure;
+    try {
+      answered.reserve(slots_.size());
+    } catch (...) {
+      fail(std::current_exception());
+      break;
+    }
     for (std::size_t k = 0; k < slots_.size() && slots_[k].is_done && !failure; ++k) {
       failure = slots_[k].answered.failure;
       answered.push_back(std::move(slots_[k].answered));

@@ -70,7 +70,7 @@ class PoseSpread {
   // Waits until all are taken. Throws the same.
   void finish();
   // Ends the threads. Returns all that was added and not taken, in order; first the chunk that
-  // failed.
+  // failed, if an answer did.
   std::vector<PoseChunk> stop();
 
  private:
@@ -93,10 +93,10 @@ class PoseSpread {
   Take take_;
   std::mutex mutex_;  // guards all below
   std::condition_variable is_asked_, is_taken_;
-  std::deque<Slot> slots_;       // those not yet taken, which stay where they are
-  std::size_t next_ = 0;         // place in slots_ of the next one to answer
-  std::size_t waiting_ = 0;      // poses in slots_
-  double seconds_per_pose_ = 0;  // of the chunks before, dear ones first; 0 before the first
+  std::deque<Slot> slots_;                 // those not yet taken, which stay where they are
+  std::size_t next_ = 0;                   // place in slots_ of the next one to answer
+  std::size_t waiting_ = 0;                // poses in slots_
+  double seconds_per_pose_ = 0;            // of the chunks before: rises at once, falls slowly
   bool is_taking_ = false, ends_ = false;  // no more will be added, or a chunk has failed
   std::exception_ptr failure_;             // of the first chunk that failed
   std::vector<std::thread> threads_;

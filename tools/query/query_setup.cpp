@@ -36,8 +36,7 @@ std::vector<Tool> read_tools(const Program& program, const std::vector<std::stri
 }
 
 // Returns the CPU for what no device computes (coherent poses, the measure as printed, solids,
-// contacts),
-// unless a device is named.
+// contacts), unless a device is named.
 Device device_of(const Program& program, const Arguments& a) {
   const bool has_solids_only = !a.solids.empty() && a.clouds.empty();
   const bool is_on_cpu = a.coherent || a.measure == "paper" || a.contacts > 0 || has_solids_only;

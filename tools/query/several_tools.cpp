@@ -57,7 +57,7 @@ class SeveralTools {
       for (std::uint32_t t = 0; t < tools_; ++t) jobs.push_back({one.pose, t, one.solids});
     std::vector<Result> results(jobs.size());
     const auto start = std::chrono::steady_clock::now();
-    const bool tells_contacts = setup_.arguments.contacts > 0;  // which jobs leave none of
+    const bool tells_contacts = setup_.arguments.contacts > 0;  // a batch leaves none
     if (asked.size() == 1 || tells_contacts) {  // the whole device answers each sooner
       for (std::size_t k = 0; k < jobs.size(); ++k) {
         const auto& [pose, tool, solids] = jobs[k];

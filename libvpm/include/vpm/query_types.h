@@ -67,9 +67,10 @@ struct Wrench {
 // the nearest centroid is the same contact. The hollows of a contact are part of it.
 //
 // What two solids share hangs together where their meshes say so, exactly. Of a depth image, or of
-// points, the cells of the tool that count hang together where places of them behind the surface
-// are nearer to each other than an eighth of the tool radius, and not where they are a quarter
-// apart; a cell is never divided between contacts.
+// points, the cells of the tool that count hang together where the centres of their samples behind
+// the surface are nearer to each other than an eighth of the tool radius, and not where they are a
+// quarter apart, but for samples larger than a sixteenth, which reach further; a cell is never
+// divided between contacts.
 //
 // OverlapOptions (vpm/solid.h) ask for contacts of two solids, QueryOptions for those of a scene.
 struct Contact {

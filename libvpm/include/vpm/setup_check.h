@@ -74,9 +74,9 @@ struct DoubtedCamera {
 // Otherwise returns a camera that is more than 30 times as far from each other one as they see;
 // else one that shows no surface which another shows too: with a warning if its pose is the
 // identity, as one that was left out, and it hides nothing that others show; else with a note, or
-// nothing for two cameras of which one hides what the other shows, as from opposite sides of a
-// thing. Returns nothing where there is none. Takes a core 20 ms for four images. Thread-safe.
-// Throws Error(invalid_argument) for a body that is no depth image.
+// nothing where no two cameras share a surface and one hides what another shows, as from opposite
+// sides of a thing. Returns nothing where there is none. Takes a core 20 ms for four images.
+// Thread-safe. Throws Error(invalid_argument) for a body that is no depth image.
 VPM_API std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images);
 
 }  // namespace vpm

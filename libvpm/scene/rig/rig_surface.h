@@ -520,8 +520,9 @@ struct RigSurface {
     reading.normal = choose(seen.known, seen.normal, Place{zero, zero, zero});
     read_silhouette(camera, at, length, nearest, reading);
     // What has smaller pixels, or is nearer, is seen better.
-    const Real pixels = quotient(camera.image.k.fx, seen.foot.z);  // per metre
-    reading.weight = seen.known ? reading.weight * (pixels * pixels) : zero;
+    const Real per_metre = quotient(camera.image.k.fx, seen.foot.z);
+    const Real rows_per_metre = quotient(camera.image.k.fy, seen.foot.z);
+    reading.weight = seen.known ? reading.weight * (per_metre * rows_per_metre) : zero;
     reading.normal = turned(camera.to_rig.rotation, reading.normal);
     return reading;
   }

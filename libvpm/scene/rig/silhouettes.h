@@ -28,7 +28,7 @@ struct Silhouettes {
   const std::uint32_t* nearest = nullptr;
 };
 
-// Distance, in widths of a pixel, within which a silhouette is read; and in rows.
+// Greatest distance, in widths of a pixel and in rows, at which a silhouette is read.
 inline constexpr int kSilhouetteReach = 24;
 
 class ImageSilhouettes {

@@ -52,3 +52,10 @@ $ printf '%s\n' '[0, 0, 0.9, 0, 0, 0, 1]' '[0, 0, 0.9,' '0, 0, 0, 1]' '# a pause
 
 # A run that was interrupted goes on with another number.
 $ (ulimit -f 16; bash ask.sh --threads 4 -o cut.jsonl 2>&-); bash ask.sh --threads 2 -o cut.jsonl --resume 2>&- && cmp cut.jsonl one.jsonl
+
+# A pose that is refused ends a run with several threads as with one, also where it comes in a list before plain lines.
+$ one='"solids":[[0,0,9,0,0,0,1]]'; two='"solids":[[0,0,9,0,0,0,1],[0,0,9,0,0,0,1]]'; tool='"tool":[0,0,0.9,0,0,0,1]'; (echo "[{$tool,$one},{$tool,$two}]"; for k in $(seq 20); do echo "{$tool,$one}"; done) > listed.jsonl
+$ for n in 1 3; do vpm-query --tool cube.vpmg --cloud wall.vpmc --solid cube.vpmg --poses listed.jsonl --threads $n > listed.$n 2> said.$n; echo $?; done; cmp listed.1 listed.3 && cmp said.1 said.3; wc -l < listed.3
+1
+1
+1
