@@ -7,6 +7,7 @@
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/exact_pose.h"
+#include "libvpm/query/contact_list.h"
 #include "libvpm/query/solid_query.h"
 #include "libvpm/solid/solid_pair.h"
 
@@ -46,13 +47,7 @@ void complete(std::vector<Contact>& contacts, const Overlap& whole) {
   const double bit = std::ldexp(1.0, std::ilogb(whole.volume) - 52);
   for (Contact& contact : contacts) contact.volume = rounded(contact.volume, bit);
   std::erase_if(contacts, [](const Contact& c) { return c.volume <= 0; });
-  Contact& largest = contacts.front();
-  largest.volume = whole.volume, largest.wrench = whole.wrench;
-  for (std::size_t k = 1; k < contacts.size(); ++k) {
-    largest.volume -= contacts[k].volume;
-    largest.wrench.force -= contacts[k].wrench.force;
-    largest.wrench.torque -= contacts[k].wrench.torque;
-  }
+  leave_rest_to_first(contacts, whole.volume, whole.wrench);
 }
 
 }  // namespace

@@ -58,13 +58,7 @@ void complete(std::vector<ContactPatch>& patches, const Result& whole, const Wre
   const auto others = patches.begin() + 1;
   patches.erase(std::remove_if(others, patches.end(), [](const auto& p) { return p.volume <= 0; }),
                 patches.end());
-  ContactPatch& largest = patches.front();
-  largest.volume = whole.volume, largest.wrench = whole.wrench;
-  for (std::size_t k = 1; k < patches.size(); ++k) {
-    largest.volume -= patches[k].volume;
-    largest.wrench.force -= patches[k].wrench.force;
-    largest.wrench.torque -= patches[k].wrench.torque;
-  }
+  leave_rest_to_first(patches, whole.volume, whole.wrench);
   std::sort(patches.begin() + 1, patches.end(), comes_first);
 }
 

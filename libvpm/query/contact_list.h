@@ -24,4 +24,18 @@ Wrench wrench_of_contacts(const Wrench& wrench, double volume, double stiffness,
 std::vector<Contact> listed_contacts(std::vector<ContactPatch> patches, std::size_t count,
                                      const Result& whole, double stiffness, const ToolModel& tool);
 
+// Gives the first of several contacts or patches, the largest, what the others leave of the whole:
+// so they add up to it in any order, if the others are multiples of steps in which the whole is
+// counted exactly.
+template <class Contacts>
+void leave_rest_to_first(Contacts& contacts, double volume, const Wrench& wrench) {
+  auto& first = contacts.front();
+  first.volume = volume, first.wrench = wrench;
+  for (std::size_t k = 1; k < contacts.size(); ++k) {
+    first.volume -= contacts[k].volume;
+    first.wrench.force -= contacts[k].wrench.force;
+    first.wrench.torque -= contacts[k].wrench.torque;
+  }
+}
+
 }  // namespace vpm
