@@ -33,19 +33,12 @@ double step_for(double most) {
   return std::ldexp(1.0, std::ilogb(most) - kBits);
 }
 
-double rounded(double value, double step) {
-  return std::nearbyint(value / step) * step + 0.0;  // -0 is 0
-}
-Vec3 rounded(Vec3 v, double step) {
-  return {rounded(v.x, step), rounded(v.y, step), rounded(v.z, step)};
-}
-
 // Gives the largest contact what rounding leaves of the whole, so that contacts add up to that in
 // any order. Drops those whose volume is below a bit of the whole's.
 void complete(std::vector<Contact>& contacts, const Overlap& whole) {
   if (contacts.empty()) return;
   const double bit = std::ldexp(1.0, std::ilogb(whole.volume) - 52);
-  for (Contact& contact : contacts) contact.volume = rounded(contact.volume, bit);
+  for (Contact& contact : contacts) contact.volume = rounded_to(bit, contact.volume);
   std::erase_if(contacts, [](const Contact& c) { return c.volume <= 0; });
   leave_rest_to_first(contacts, whole.volume, whole.wrench);
 }
@@ -74,8 +67,8 @@ struct OverlapQuery::Impl {
   double force_step, torque_step;
 
   Wrench wrench(Vec3 force, Vec3 torque) const {
-    return {rounded(options.stiffness * force, force_step),
-            rounded(options.stiffness * torque, torque_step)};
+    return {rounded_to(force_step, options.stiffness * force),
+            rounded_to(torque_step, options.stiffness * torque)};
   }
 };
 

@@ -22,14 +22,8 @@ struct WrenchSteps {
     constexpr double kLeast = 0x1p-1000;  // whose step is a number above 0
     return std::ldexp(1.0, std::ilogb(std::max(most, kLeast)) - kBits);
   }
-  static double rounded(double value, double step) {
-    return std::nearbyint(value / step) * step + 0.0;  // -0 is 0
-  }
-  static Vec3 rounded(Vec3 v, double step) {
-    return {rounded(v.x, step), rounded(v.y, step), rounded(v.z, step)};
-  }
   Wrench rounded(const Wrench& w) const {
-    return {rounded(w.force, force), rounded(w.torque, torque)};
+    return {rounded_to(force, w.force), rounded_to(torque, w.torque)};
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <vpm/query_types.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,6 +24,14 @@ Wrench wrench_of_contacts(const Wrench& wrench, double volume, double stiffness,
 // are rounded, are left out. The order of patches changes no bit.
 std::vector<Contact> listed_contacts(std::vector<ContactPatch> patches, std::size_t count,
                                      const Result& whole, double stiffness, const ToolModel& tool);
+
+// Returns the nearest multiple of a step, a power of two; 0 for -0.
+inline double rounded_to(double step, double value) {
+  return std::nearbyint(value / step) * step + 0.0;
+}
+inline Vec3 rounded_to(double step, Vec3 v) {
+  return {rounded_to(step, v.x), rounded_to(step, v.y), rounded_to(step, v.z)};
+}
 
 // Gives the first of several contacts or patches, the largest, what the others leave of the whole:
 // so they add up to it in any order, if the others are multiples of steps in which the whole is

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/api/boxes.h"
+#include "tests/contact_sums.h"
 
 namespace {
 
@@ -19,13 +20,10 @@ using vpm::Pose;
 using vpm::Result;
 using vpm::Vec3;
 using vpm::test::kind_of;
+using vpm::testing::expect_sums;
 
 Pose at(double x, double y, double z) {
   return {{}, {x, y, z}};
-}
-
-Vec3 operator+(Vec3 a, Vec3 b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
 void expect_near(Vec3 a, Vec3 b, double within) {
@@ -34,20 +32,6 @@ void expect_near(Vec3 a, Vec3 b, double within) {
   EXPECT_NEAR(a.z, b.z, within);
 }
 
-// Contacts add up to the answer in the order of the list, and in the opposite one.
-void expect_sums(std::vector<Contact> contacts, const Result& whole) {
-  for (int turn = 0; turn < 2; ++turn) {
-    Contact sum;
-    for (const Contact& c : contacts) {
-      sum.volume += c.volume;
-      sum.wrench.force = sum.wrench.force + c.wrench.force;
-      sum.wrench.torque = sum.wrench.torque + c.wrench.torque;
-    }
-    EXPECT_EQ(sum.volume, whole.volume);
-    EXPECT_EQ(sum.wrench, whole.wrench);
-    std::reverse(contacts.begin(), contacts.end());
-  }
-}
 void expect_order(const std::vector<Contact>& contacts) {
   for (std::size_t k = 1; k < contacts.size(); ++k)
     EXPECT_TRUE(contacts[k].patches > 1 || contacts[k].volume <= contacts[k - 1].volume);
@@ -61,7 +45,8 @@ class Contacts : public testing::Test {
     static const vpm::SolidBody slab(vpm::test::box({-5, -20, -20}, {5, 20, 20}));
     return Body(slab, at((is_right ? 1 : -1) * (5.1 - depth), 0, 0));
   }
-  // Returns small cubes about the tool's faces and edges, some of which overlap each other.
+  // Returns `count` cubes of .04 m at random places in and around the tool; some overlap each
+  // other.
   static std::vector<Body> cubes(int count) {
     static const vpm::SolidBody cube(vpm::test::box({-.02, -.02, -.02}, {.02, .02, .02}));
     std::mt19937 random(5);

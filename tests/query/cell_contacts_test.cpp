@@ -10,11 +10,13 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/tool_query.h"
+#include "tests/contact_sums.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
 namespace {
 
+using testing::expect_sums;
 using testing::see;
 
 constexpr double kLeftEnd = -.03, kRightBegin = .04;  // m
@@ -34,19 +36,6 @@ Cloud ledges() {
 
 void expect_near(Vec3 a, Vec3 b, double within) {
   EXPECT_LT(norm(a - b), within) << a.x << ' ' << a.y << ' ' << a.z;
-}
-
-void expect_sums(std::vector<Contact> contacts, const Result& whole) {
-  for (int turn = 0; turn < 2; ++turn) {
-    Contact sum;
-    for (const Contact& c : contacts) {
-      sum.volume += c.volume;
-      sum.wrench.force += c.wrench.force, sum.wrench.torque += c.wrench.torque;
-    }
-    EXPECT_EQ(sum.volume, whole.volume);
-    EXPECT_EQ(sum.wrench, whole.wrench);
-    std::reverse(contacts.begin(), contacts.end());
-  }
 }
 
 class CellContacts : public ::testing::Test {

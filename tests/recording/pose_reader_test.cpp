@@ -264,7 +264,7 @@ Told told(const Pose& pose, std::optional<double> time, const std::string& id,
   return {{t.x, t.y, t.z, q.x, q.y, q.z, q.w}, time, id, solids.size()};
 }
 
-// Adds the poses up to a refusal, and the refusal.
+// Holds what a reader says: the poses before the first that it refuses, and that refusal.
 struct AllPoses {
   std::vector<Told> poses;
   std::string refusal;

@@ -134,7 +134,7 @@ void KeptLines::open() {
 
 // Keeps the whole lines that are there, if they are of the same run.
 void KeptLines::go_on(const Json& run) {
-  const WholeLines whole = whole_lines(descriptor_, is_csv());
+  const WholeLines whole = whole_lines(descriptor_, is_csv(target_));
   if (whole.count == 0) return;
   const std::string names = differences(told_in(told_), run);
   if (!names.empty())
@@ -151,7 +151,7 @@ void KeptLines::append(std::string_view text, std::size_t lines) {
     if (size < 0 && errno == EINTR) continue;
     if (size < 0) {
       const int fault = errno;
-      lines_ = whole_lines(descriptor_, is_csv()).count;  // some of these may be there
+      lines_ = whole_lines(descriptor_, is_csv(target_)).count;  // some of these may be there
       cannot_write(target_, fault);
     }
     text.remove_prefix(static_cast<std::size_t>(size));
@@ -159,8 +159,8 @@ void KeptLines::append(std::string_view text, std::size_t lines) {
   lines_ += lines;
 }
 
-bool KeptLines::is_csv() const {
-  return file::in_lower_case(fs::path(target_).extension().string()) == ".csv";
+bool is_csv(const std::string& path) {
+  return file::in_lower_case(fs::path(path).extension().string()) == ".csv";
 }
 
 void KeptLines::finish() {

@@ -12,6 +12,9 @@ namespace vpm::tools {
 // What becomes of the lines that an earlier run left.
 enum class Leftover { refuse, resume, discard };
 
+// True for the name of a file that holds CSV.
+bool is_csv(const std::string& path);
+
 // A file NAME whose lines are written at once to NAME.part, which becomes NAME at the end. What the
 // lines depend on stands in NAME.part.json, so that another run can go on after the last whole one.
 // Not thread-safe.
@@ -40,7 +43,6 @@ class KeptLines {
 
  private:
   void open();
-  bool is_csv() const;
   void go_on(const nlohmann::json& run);
 
   std::string target_, part_, told_;

@@ -129,10 +129,6 @@ std::string csv_field(const nlohmann::ordered_json& value) {
   return quoted + "\"";
 }
 
-bool is_csv(const std::string& path) {
-  return file::in_lower_case(std::filesystem::path(path).extension().string()) == ".csv";
-}
-
 std::string names_of(std::span<const CsvColumn> columns) {
   std::string names;
   for (const CsvColumn& column : columns)

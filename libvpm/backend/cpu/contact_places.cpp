@@ -24,8 +24,9 @@ LevelPlaces::LevelPlaces(const SpatialLevel& level, double tool_radius)
 
 namespace {
 
-// Returns the number of cubes along an axis before a place, which is in edges from the middle.
-int cubes_before(double edges) {
+// Returns the index along an axis of the cube that holds a place, which is given in edges of cubes
+// from the middle of the grid; the outermost cube takes what is beyond.
+int cube_index(double edges) {
   constexpr double kHalf = kPlacesPerEdge / 2;
   return static_cast<int>(std::clamp(edges + kHalf, 0.0, kPlacesPerEdge - 1.0));
 }
@@ -38,7 +39,7 @@ ContactPlace number_of(int x, int y, int z) {
 
 ContactPlace LevelPlaces::at(Vec3 place) const {
   const Vec3 edges = 1 / edge_ * place;
-  return number_of(cubes_before(edges.x), cubes_before(edges.y), cubes_before(edges.z));
+  return number_of(cube_index(edges.x), cube_index(edges.y), cube_index(edges.z));
 }
 
 void LevelPlaces::add_sample(const CellSample& sample) {
@@ -46,7 +47,7 @@ void LevelPlaces::add_sample(const CellSample& sample) {
   const double radius = sample.radius / edge_;
   of_samples_.push_back(at(widen(sample.center)));
   const auto for_cubes = [&](double x, const auto& visit) {
-    for (int k = cubes_before(x - radius); k <= cubes_before(x + radius); ++k)
+    for (int k = cube_index(x - radius); k <= cube_index(x + radius); ++k)
       visit(k, k + 0.5 - kPlacesPerEdge / 2);
   };
   if (radius > 0.5)

@@ -23,7 +23,8 @@ class LevelPlaces {
  public:
   LevelPlaces(const SpatialLevel& level, double tool_radius);
 
-  // Returns the cube of a place about the tool's centre of mass, m.
+  // Returns the cube of the grid that holds a place, which is given from the tool's centre of
+  // mass, m.
   ContactPlace at(Vec3 place) const;
   // Returns the cube of a sample's centre, and of large samples those with their middle in its
   // ball, so that neighbouring samples have neighbouring cubes at coarse levels, too.

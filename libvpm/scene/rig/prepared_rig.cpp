@@ -31,7 +31,7 @@ int compare_pixels(const PreparedImage& a, const PreparedImage& b) {
   for (std::int32_t i = 0; i < pixels; ++i) {
     const auto key = [i](const DepthSurface& image) {
       const Vec3f n = image.normals[i];
-      // A removed pixel, -0, is another one than a hole.
+      // Compares depths by their bits: -0 stands for a removed pixel, 0 for a hole.
       return std::tuple(std::bit_cast<std::uint32_t>(image.measured[i]), image.tiles[0][i].high,
                         n.x, n.y, n.z);
     };

@@ -178,8 +178,9 @@ void offer_column(int column, int first, int last, std::int32_t rows, std::int32
   }
 }
 
-// Finds for each pixel of a row the silhouette pixel that is nearest, given the nearest ones of all
-// columns. Where several are equally near, the leftmost is taken.
+// Finds for each pixel of a row the nearest silhouette pixel of the image. For that it is given the
+// one of each column that is nearest to the row. Where several are equally near, the leftmost is
+// taken.
 class NearestInRow {
  public:
   // Takes the width of the image, and how many times as high as wide a pixel is.
