@@ -16,7 +16,7 @@ packages=(
   libglu1-mesa-dev libassimp-dev libexpat1-dev
   libjs-three python3
 )
-test_packages=(libgtest-dev pkg-config pybind11-dev python3-dev)
+test_packages=(libgtest-dev pkg-config pybind11-dev libdlpack-dev python3-dev)
 # What nothing is built with: pictures and tables of scripts are made by the first, and tests run all of them.
 picture_packages=(python3-numpy python3-matplotlib)
 test_run_packages=("${picture_packages[@]}" python3-jsonschema python3-pytest python3-venv)
@@ -113,7 +113,7 @@ build_targets() {
 build() {
   local more
   mapfile -t more < <(cuda_options)
-  if is_installed pybind11-dev; then more+=(-DVPM_PYTHON=ON); fi
+  if is_installed pybind11-dev && is_installed libdlpack-dev; then more+=(-DVPM_PYTHON=ON); fi
   say "Building into build/release (the first time takes some minutes)"
   configure -DVPM_CUDA=AUTO "${more[@]}"
   build_targets

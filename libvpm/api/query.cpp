@@ -59,6 +59,32 @@ void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result>
                  HandleAccess::solids(scene));
 }
 
+DeviceResults Query::run(const Scene& scene, const DevicePoses& poses) {
+  return DeviceResults(
+      impl().queries.front().run(HandleAccess::held(scene), poses, HandleAccess::solids(scene)));
+}
+
+DeviceResults::DeviceResults(std::shared_ptr<const ResidentAnswers> answers)
+    : answers_(std::move(answers)) {}
+const ResidentAnswers& DeviceResults::answers() const {
+  return held_by(answers_, "DeviceResults");
+}
+std::size_t DeviceResults::size() const {
+  return answers().size();
+}
+Device DeviceResults::device() const {
+  return answers().device();
+}
+const DeviceResult* DeviceResults::rows() const {
+  return answers().rows();
+}
+void DeviceResults::wait_in(void* stream) const {
+  answers().wait_in(stream);
+}
+void DeviceResults::wait() const {
+  answers().wait();
+}
+
 void Query::forget() {
   for (ToolQuery& query : impl().queries) query.forget();
 }

@@ -1,6 +1,7 @@
 // Measures on CUDA devices, with the bits of RefinedMeasure.
 #pragma once
 
+#include <vpm/device_batch.h>
 #include <vpm/query_types.h>
 
 #include <memory>
@@ -12,6 +13,17 @@
 #include "libvpm/scene/any_body.h"
 
 namespace vpm {
+
+// Answers in a device's memory. Has the contract of DeviceResults.
+class ResidentAnswers {
+ public:
+  virtual ~ResidentAnswers() = default;
+  virtual std::size_t size() const = 0;
+  virtual Device device() const = 0;
+  virtual const DeviceResult* rows() const = 0;
+  virtual void wait_in(void* stream) const = 0;
+  virtual void wait() const = 0;
+};
 
 // Keeps a tool's level on the device. Belongs to one thread at a time.
 class DeviceMeasure {
@@ -25,6 +37,12 @@ class DeviceMeasure {
   // lies there already. Throws Error(unavailable) if the device fails.
   virtual void run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
                    std::span<const BodyJob> jobs, std::span<BodySum> sums) = 0;
+
+  // Begins to answer poses on the device before a scene's bodies, for a stiffness of N/m^3. Has the
+  // contract of Query::run.
+  virtual std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
+                                                     const DevicePoses& poses,
+                                                     double stiffness) = 0;
 
   // Returns what a body gives for a single job.
   BodySum run(const AnyBody& body, const Pose& to_body) {
@@ -61,6 +79,12 @@ class SpreadMeasure : public DeviceMeasure {
   // long as any are left. All `measures` must spread over the same devices.
   void run(const AnyBody& body, std::span<DeviceMeasure* const> measures,
            std::span<const BodyJob> jobs, std::span<BodySum> sums) override;
+
+  // Leaves poses on a device to the first one.
+  std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
+                                             const DevicePoses& poses, double stiffness) override {
+    return measures_.front()->run(scene, poses, stiffness);
+  }
 
   void keep_only(std::span<const AnyBody> scene) override {
     for (const auto& measure : measures_) measure->keep_only(scene);

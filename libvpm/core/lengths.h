@@ -13,11 +13,11 @@ namespace vpm {
 inline constexpr double kSmallestLength = 0x1p-100, kLargestLength = 0x1p100;
 
 // True if all coordinates are finite and at most `most` in magnitude.
-inline bool is_within(Vec3 v, double most) {
+VPM_HD inline bool is_within(Vec3 v, double most) {
   return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
 // True if all coordinates are finite and at most kLargestLength in magnitude.
-inline bool is_in_range(Vec3 p) {
+VPM_HD inline bool is_in_range(Vec3 p) {
   return is_within(p, kLargestLength);
 }
 

@@ -13,21 +13,6 @@
 namespace vpm {
 namespace {
 
-// Returns the nearest rotation to m by Newton's iteration for the polar decomposition, m <- (m +
-// m^-T) / 2. It converges quadratically from deviations up to kRotationTolerance.
-Rotation nearest_rotation(Rotation m) {
-  constexpr int kIterations = 8;
-  for (int k = 0; k < kIterations; ++k) {
-    const double determinant = dot(m.row0, cross(m.row1, m.row2));
-    const Rotation inverse_transpose{cross(m.row1, m.row2) / determinant,
-                                     cross(m.row2, m.row0) / determinant,
-                                     cross(m.row0, m.row1) / determinant};
-    m = {0.5 * (m.row0 + inverse_transpose.row0), 0.5 * (m.row1 + inverse_transpose.row1),
-         0.5 * (m.row2 + inverse_transpose.row2)};
-  }
-  return m;
-}
-
 // Refuses a rotation times a scale, with the scale. Does nothing for other matrices.
 void refuse_scale(const Rotation& m) {
   const Rotation columns = transpose(m);
@@ -50,17 +35,14 @@ void refuse_scale(const Rotation& m) {
 }  // namespace
 
 Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
-  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  const double length = length_of(q);
   if (!std::isfinite(length)) refuse("the quaternion is not finite", "pose");
   if (!(std::abs(length - 1) <= kRotationTolerance)) {
     refuse("the quaternion has length " + std::to_string(length) + " instead of 1", "pose",
            "give x,y,z,w of a unit quaternion");
   }
   if (deviation != nullptr) *deviation = std::abs(length - 1);
-  const double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
-  return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-          {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-          {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+  return rotation_of(q, length);
 }
 
 Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation) {
@@ -68,11 +50,8 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
     if (!std::isfinite(value)) refuse("the rotation matrix is not finite", "pose");
   }
   const Rotation given{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
-  const Rotation gram = given * transpose(given);
-  const double off =
-      std::max({std::abs(gram.row0.x - 1), std::abs(gram.row1.y - 1), std::abs(gram.row2.z - 1),
-                std::abs(gram.row0.y), std::abs(gram.row0.z), std::abs(gram.row1.z)});
-  if (!(dot(given.row0, cross(given.row1, given.row2)) > 0)) {
+  const double off = off_rotation(given);
+  if (!(determinant(given) > 0)) {
     refuse("the rotation matrix mirrors (its determinant is not positive)", "pose",
            "give a proper rotation");
   }
@@ -82,10 +61,6 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
   }
   if (deviation != nullptr) *deviation = off;
   return nearest_rotation(given);
-}
-
-Rotation exact_rotation(const Rotation& rounded) {
-  return is_rotation(rounded, kRotationExact) ? rounded : nearest_rotation(rounded);
 }
 
 Quaternion quaternion_from_rotation(const Rotation& r) {

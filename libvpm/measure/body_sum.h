@@ -19,8 +19,8 @@ struct BodyJob {
 };
 
 // Returns what maps coordinates about a tool's centre of mass to the frame of a body.
-inline Pose pose_in_body(const Pose& body_to_world, const Pose& tool_to_world,
-                         Vec3 center_of_mass) {
+VPM_HD inline Pose pose_in_body(const Pose& body_to_world, const Pose& tool_to_world,
+                                Vec3 center_of_mass) {
   return relative_to(body_to_world, {tool_to_world.rotation, tool_to_world * center_of_mass});
 }
 
@@ -40,33 +40,58 @@ struct BodySum {
 class SceneSum {
  public:
   void add(const BodySum& body) {
-    const ToolSum& s = body.sum;
+    add(body.sum, body.boundary, body.inside);
+    if (body.points) counts_points_ = true, points_ += *body.points;
+    bodies_that_know_ += body.knows_all_space;
+    if (body.unseen) see(*body.unseen, body.sum);
+  }
+  // Adds a body of which nothing else is known.
+  VPM_HD void add(const ToolSum& s, std::uint32_t boundary, std::uint32_t inside) {
     const ToolSum::Sum* const terms[kTerms] = {&s.volume,    &s.force[0],  &s.force[1], &s.force[2],
                                                &s.torque[0], &s.torque[1], &s.torque[2]};
     for (int k = 0; k < kTerms; ++k) terms_[k].add(terms[k]->value);
-    boundary_ += body.boundary;
-    inside_ += body.inside;
-    if (body.points) points_ = points_.value_or(0) + *body.points;
-    bodies_that_know_ += body.knows_all_space;
-    if (body.unseen) visibility_ = visibility_of(*body.unseen, s.volume.real()), ++cameras_;
+    boundary_ += boundary;
+    inside_ += inside;
     ++bodies_;
   }
+  // Adds what the camera sees whose body gave `sum`.
+  VPM_HD void see(const UnseenSum& unseen, const ToolSum& sum) {
+    visibility_ = visibility_of(unseen, sum.volume.real());
+    ++cameras_;
+  }
 
-  // Returns the answer in SI units and world axes; `rotation` maps the tool's axes to the world's.
-  Result result(const ToolModel& tool, const Rotation& rotation) const {
-    Result result;
+  // Returns the part of the tool that is inside.
+  VPM_HD double volume_fraction() const {
     const double most = bodies_;  // rounding may pass it
-    result.volume_fraction = real(0) < most ? real(0) : most;
+    return real(0) < most ? real(0) : most;
+  }
+  // Returns force and torque in world axes, for a stiffness of N/m^3; `rotation` maps the axes of
+  // the tool, of this volume and radius, to the world's.
+  VPM_HD Wrench wrench(double tool_volume, double tool_radius, const Rotation& rotation,
+                       double stiffness) const {
+    const Vec3 force = tool_volume * (rotation * Vec3{real(1), real(2), real(3)});
+    const Vec3 torque = tool_volume * (tool_radius * (rotation * Vec3{real(4), real(5), real(6)}));
+    return {stiffness * force, stiffness * torque};
+  }
+  VPM_HD std::uint32_t boundary() const { return boundary_; }
+  VPM_HD std::uint32_t inside() const { return inside_; }
+
+  // True if the scene tells what is seen of the tool: if it has one camera, or only closed solids.
+  VPM_HD bool tells_sight() const { return cameras_ == 1 || knows_all_space(); }
+  VPM_HD Visibility visibility() const {
+    return knows_all_space() ? visibility_of({}, volume_fraction()) : visibility_;
+  }
+
+  // Returns the answer in SI units and world axes.
+  Result result(const ToolModel& tool, const Rotation& rotation, double stiffness = 1) const {
+    Result result;
+    result.volume_fraction = volume_fraction();
     result.volume = tool.volume * result.volume_fraction;
-    result.wrench.force = tool.volume * (rotation * Vec3{real(1), real(2), real(3)});
-    result.wrench.torque =
-        tool.volume * (tool.radius * (rotation * Vec3{real(4), real(5), real(6)}));
+    result.wrench = wrench(tool.volume, tool.radius, rotation, stiffness);
     result.boundary = boundary_;
     result.inside = inside_;
-    result.points = points_;
-    if (cameras_ == 1) result.visibility = visibility_;
-    if (bodies_ > 0 && bodies_that_know_ == bodies_)
-      result.visibility = visibility_of({}, result.volume_fraction);
+    if (counts_points_) result.points = points_;
+    if (tells_sight()) result.visibility = visibility();
     return result;
   }
 
@@ -74,7 +99,7 @@ class SceneSum {
   // Returns the fractions for a camera's body, or for solids, at which nothing is unseen. The
   // weights of a tool's parts add up to 1 up to rounding: what that leaves was seen free, and what
   // it exceeds is taken from the rest.
-  static Visibility visibility_of(const UnseenSum& sum, double volume_fraction) {
+  VPM_HD static Visibility visibility_of(const UnseenSum& sum, double volume_fraction) {
     const auto least = [](double a, double b) { return a < b ? a : b; };
     Visibility is;
     double rest = 1 - least(volume_fraction, 1);
@@ -89,20 +114,24 @@ class SceneSum {
   struct Wide {
     std::int64_t high = 0, low = 0;
 
-    void add(std::int64_t value) {
+    VPM_HD void add(std::int64_t value) {
       high += value >> 32;
       low += value & 0xffffffff;
     }
     // Returns the sum rounded once: both products are exact.
-    double real() const { return 0x1p32 * static_cast<double>(high) + static_cast<double>(low); }
+    VPM_HD double real() const {
+      return 0x1p32 * static_cast<double>(high) + static_cast<double>(low);
+    }
   };
   static constexpr int kTerms = 7;
 
-  double real(int term) const { return terms_[term].real() / ToolSum::Sum::kOne; }
+  VPM_HD double real(int term) const { return terms_[term].real() / ToolSum::Sum::kOne; }
+  VPM_HD bool knows_all_space() const { return bodies_ > 0 && bodies_that_know_ == bodies_; }
 
   Wide terms_[kTerms];  // volume, force, torque
   std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, bodies_that_know_ = 0;
-  std::optional<std::uint32_t> points_;
+  std::uint32_t points_ = 0;
+  bool counts_points_ = false;
   Visibility visibility_;  // of the last camera
 };
 

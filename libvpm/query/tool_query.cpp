@@ -259,6 +259,22 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, std::span<const AnyBody
                            : run_on_cpu(queries, scene, jobs, results, solids);
 }
 
+std::shared_ptr<const ResidentAnswers> ToolQuery::run(std::span<const AnyBody> scene,
+                                                      const DevicePoses& poses,
+                                                      std::span<const PlacedSolid> solids) {
+  check(scene, {solids, {}});
+  if (!device_ || options_.device.index == Device::kAll)
+    invalid("poses on a device are for a query on one CUDA device", "give it `device` cuda");
+  if (!solids.empty())
+    invalid("the CPU measures the scene's solids, and the poses lie on a device",
+            "copy the poses to the host");
+  if (poses.width != 7 && poses.width != 12 && poses.width != 16)
+    invalid("poses on a device have " + std::to_string(poses.width) + " numbers each",
+            "give 7, or 12 or 16 of a matrix");
+  device_->keep_only(scene);
+  return device_->run(scene, poses, options_.stiffness);
+}
+
 ToolQuery& ToolQuery::of_thread(std::size_t thread) {
   std::unique_ptr<ToolQuery>& query = of_threads_[thread];
   if (!query) query = std::make_unique<ToolQuery>(*this);
@@ -359,10 +375,8 @@ std::span<const SphereState> ToolQuery::states() const {
 
 Result ToolQuery::finished(const SceneSum& sum, const Pose& pose,
                            std::optional<double> closure) const {
-  Result result = sum.result(tool_, pose.rotation);
+  Result result = sum.result(tool_, pose.rotation, options_.stiffness);
   result.closure = closure;
-  result.wrench.force = options_.stiffness * result.wrench.force;
-  result.wrench.torque = options_.stiffness * result.wrench.torque;
   if (options_.contacts > 0)
     result.wrench =
         wrench_of_contacts(result.wrench, result.volume, options_.stiffness, tool_.radius);

@@ -56,6 +56,11 @@ class ToolQuery {
     run(std::span(&body, 1), jobs, results);
   }
 
+  // Begins to answer poses that lie on the query's device. Has the contract of Query::run.
+  std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
+                                             const DevicePoses& poses,
+                                             std::span<const PlacedSolid> solids = {});
+
   // Prepares the tool's surface, which solids of a scene need. Throws Error(refused) if it has
   // none.
   void prepare_surface() { solid_query_->prepare(); }

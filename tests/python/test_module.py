@@ -375,3 +375,32 @@ def test_everything_has_its_help():
             for member, value in vars(documented).items():
                 if not member.startswith("_"):
                     assert inspect.getdoc(value), f"{name}.{member}"
+
+
+class OnDevice:
+    """Says that it lies on a CUDA device, as arrays of other programs do that lie there."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack_device__(self):
+        return 2, 0
+
+    def __dlpack__(self, *, stream):
+        assert stream == 1  # the default one, as DLPack numbers it
+        return self.array.__dlpack__()
+
+
+@pytest.mark.parametrize("array, reason", [
+    (np.zeros((3, 7)), "query on one CUDA device"),
+    (np.zeros((3, 4, 4)), "query on one CUDA device"),
+    (np.zeros((3, 6)), "float64 without gaps"),
+    (np.zeros((3, 7), np.float32), "float64 without gaps"),
+    (np.zeros((7, 3)).T, "float64 without gaps"),
+    (np.zeros((3, 4, 8))[:, :, ::2], "float64 without gaps"),
+])
+def test_poses_on_a_device_are_taken_or_named(tool, scene, array, reason):
+    held = sys.getrefcount(array)
+    with pytest.raises(vpm.ArgumentError, match=reason):
+        vpm.Query(tool).run_batch(scene, OnDevice(array))
+    assert sys.getrefcount(array) == held

@@ -18,8 +18,9 @@ class JobOrder {
     unsigned end = 0;
   };
 
-  // Counts and sorts: tools that have jobs, in their order, and of each the jobs in theirs.
-  void order(std::span<const BodyJob> jobs, std::size_t tools) {
+  // Counts and sorts: tools that have jobs, in their order, and of each the jobs in theirs. Stores
+  // the poses in that order.
+  void order(std::span<const BodyJob> jobs, std::size_t tools, Pose* poses) {
     next_.assign(tools + 1, 0);
     for (const BodyJob& job : jobs) ++next_[job.tool + 1];
     parts_.clear();
@@ -28,23 +29,20 @@ class JobOrder {
       next_[t + 1] += next_[t];
       if (has_jobs) parts_.push_back({t, next_[t + 1]});
     }
-    poses_.resize(jobs.size());
     places_.resize(jobs.size());
     for (std::uint32_t k = 0; k < jobs.size(); ++k) {
       const std::uint32_t place = next_[jobs[k].tool]++;
-      poses_[place] = jobs[k].to_body;
+      poses[place] = jobs[k].to_body;
       places_[place] = k;
     }
   }
 
   const std::vector<Part>& parts() const { return parts_; }
-  const std::vector<Pose>& poses() const { return poses_; }
   // Returns the job that an ordered pose is from.
   std::uint32_t place(std::size_t k) const { return places_[k]; }
 
  private:
   std::vector<Part> parts_;
-  std::vector<Pose> poses_;
   std::vector<std::uint32_t> places_, next_;
 };
 

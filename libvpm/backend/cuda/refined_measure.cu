@@ -4,7 +4,9 @@
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/job_order.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
+#include "libvpm/backend/cuda/resident_batch.h"
 #include "libvpm/backend/device_measure.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/device/cuda/occupancy.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 #include "libvpm/scene/cuda/device_bodies.h"
@@ -48,10 +50,12 @@ struct Teams {
 struct Batch {
   static constexpr std::size_t kJobs = 16384;
 
-  Batch() : poses(kJobs), results(kJobs), answers(kJobs) {}
+  Batch() : given(kJobs), answers(kJobs), poses(kJobs), sums(kJobs), results(kJobs) {}
+  MappedArray<Pose> given;  // of the host, to and from which the device copies at the bus's speed
+  MappedArray<RawResult> answers;
   DeviceArray<Pose> poses;
+  DeviceArray<SceneSum> sums;  // of poses that lie on the device
   DeviceArray<RawResult> results;
-  std::vector<RawResult> answers;
   JobOrder order;
 };
 
@@ -61,6 +65,7 @@ class RefinedOnDevice : public DeviceMeasure {
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
       : device_(device),
+        scale_{tool.center_of_mass, tool.volume, tool.radius},
         level_(tool, level, options.shadows),
         kernels_(BodyKinds::of_surfaces<PoseKernel>(level_.view())),
         memory_(TeamRoom(level_.view()), 1, most_blocks(), kThreads),
@@ -74,6 +79,29 @@ class RefinedOnDevice : public DeviceMeasure {
            std::span<const BodyJob> jobs, std::span<BodySum> sums) override {
     const CurrentDevice current(device_);
     body.visit([&](const auto& one) { run_on(one, measures, jobs, sums); });
+  }
+  std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
+                                             const DevicePoses& poses, double stiffness) override {
+    const CurrentDevice current(device_);
+    require_memory_of(device_, poses);
+    if (!batch_) batch_ = std::make_unique<Batch>();
+    const auto answers = std::make_shared<AnswersOnDevice>(device_, poses.count, scene);
+    const Event ready(cudaEventDisableTiming);
+    check(cudaEventRecord(ready.get(), static_cast<cudaStream_t>(poses.stream)));
+    check(cudaStreamWaitEvent(stream_.get(), ready.get()));
+    ToolScale scale = scale_;
+    scale.stiffness = stiffness;
+    DevicePoses part = poses;
+    for (std::size_t begin = 0; begin < poses.count; begin += part.count) {
+      part.numbers = poses.numbers + begin * poses.width;
+      part.count = std::min(Batch::kJobs, poses.count - begin);
+      for (const AnyBody& body : scene)
+        body.visit([&](const auto& one) { add_resident(one, part, &body == scene.data()); });
+      launch_kernel(tell, size_of(part.count), LaunchKind::independent, stream_.get(), part, scale,
+                    batch_->sums.get(), answers->memory() + begin);
+    }
+    check(cudaEventRecord(answers->told().get(), stream_.get()));
+    return answers;
   }
   void keep_only(std::span<const AnyBody> scene) override { copies_.keep_only(scene); }
 
@@ -105,13 +133,45 @@ class RefinedOnDevice : public DeviceMeasure {
   // Asks a frame that is made on this device, else the copy of what the CPU prepares.
   void run_on(const DepthBody& body, std::span<DeviceMeasure* const> measures,
               std::span<const BodyJob> jobs, std::span<BodySum> sums) {
-    const auto* const slot = dynamic_cast<const CloudSlot*>(body.slot());
-    if (slot != nullptr && slot->options().device.first() == device_ && slot->is_on_device()) {
+    if (const CloudSlot* const slot = slot_of(body)) {
       slot->require(stream_.get());
       ask(slot->body().surface(), measures, jobs, sums);
       if (slot->is_sound()) return;
     }
     run_on<DepthBody>(body, measures, jobs, sums);
+  }
+  // Returns the frame of a body that is made on this device; null if there is none.
+  const CloudSlot* slot_of(const DepthBody& body) const {
+    const auto* const slot = dynamic_cast<const CloudSlot*>(body.slot());
+    const bool is_here = slot != nullptr && slot->options().device.first() == device_;
+    return is_here && slot->is_on_device() ? slot : nullptr;
+  }
+
+  // Add what a body gives for poses on the device.
+  template <class Kind>
+  void add_resident(const Kind& body, const DevicePoses& poses, bool is_first) {
+    add_resident(copies_.of(body).surface(), body.to_world(), poses, is_first);
+  }
+  // Waits for a frame that is made on this device, since it may not be sound.
+  void add_resident(const DepthBody& body, const DevicePoses& poses, bool is_first) {
+    const CloudSlot* const slot = slot_of(body);
+    if (slot == nullptr || !slot->is_sound()) return add_resident<DepthBody>(body, poses, is_first);
+    slot->require(stream_.get());
+    add_resident(slot->body().surface(), body.to_world(), poses, is_first);
+  }
+  template <class Surface>
+  void add_resident(const Surface& surface, const Pose& to_world, const DevicePoses& poses,
+                    bool is_first) {
+    const auto launch = [&](auto kernel, const auto&... arguments) {
+      launch_kernel(kernel, size_of(poses.count), LaunchKind::independent, stream_.get(),
+                    arguments...);
+    };
+    launch(place_poses, poses, to_world, scale_.center_of_mass, batch_->poses.get());
+    DeviceMeasure* const self = this;
+    const JobOrder::Part all{0, static_cast<unsigned>(poses.count)};
+    make_room({&self, 1}, {&all, 1});
+    launch_batch(surface, {&self, 1}, {&all, 1});
+    launch(add_body<Surface>, batch_->results.get(), poses.count, is_first, batch_->sums.get());
   }
 
   template <class Surface>
@@ -124,10 +184,13 @@ class RefinedOnDevice : public DeviceMeasure {
     if (!batch_) batch_ = std::make_unique<Batch>();
     for (std::size_t begin = 0; begin < jobs.size(); begin += Batch::kJobs) {
       const std::size_t count = std::min(Batch::kJobs, jobs.size() - begin);
-      batch_->order.order(jobs.subspan(begin, count), measures.size());
-      const std::span<const RawResult> answers = answers_of(surface, measures);
-      for (std::size_t k = 0; k < count; ++k)
-        sums[begin + batch_->order.place(k)] = sum_of<Surface>(answers[k]);
+      batch_->order.order(jobs.subspan(begin, count), measures.size(), batch_->given.host());
+      const std::span<const RawResult> answers = answers_of(surface, measures, count);
+      constexpr std::size_t kAnswersPerTask = 2048;
+      parallel_for(count, kAnswersPerTask, [&](std::size_t first, std::size_t end) {
+        for (std::size_t k = first; k < end; ++k)
+          sums[begin + batch_->order.place(k)] = sum_of<Surface>(answers[k]);
+      });
     }
   }
 
@@ -147,25 +210,25 @@ class RefinedOnDevice : public DeviceMeasure {
   // Returns the answers to the ordered jobs of one launch.
   template <class Surface>
   std::span<const RawResult> answers_of(const Surface& surface,
-                                        std::span<DeviceMeasure* const> measures) {
-    const std::vector<Pose>& poses = batch_->order.poses();
-    check(cudaMemcpyAsync(batch_->poses.get(), poses.data(), poses.size() * sizeof(Pose),
+                                        std::span<DeviceMeasure* const> measures,
+                                        std::size_t count) {
+    check(cudaMemcpyAsync(batch_->poses.get(), batch_->given.host(), count * sizeof(Pose),
                           cudaMemcpyHostToDevice, stream_.get()));
-    make_room(measures);
-    launch_batch(surface, measures);
-    check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
-                          poses.size() * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
+    make_room(measures, batch_->order.parts());
+    launch_batch(surface, measures, batch_->order.parts());
+    check(cudaMemcpyAsync(batch_->answers.host(), batch_->results.get(), count * sizeof(RawResult),
+                          cudaMemcpyDeviceToHost, stream_.get()));
     check(cudaStreamSynchronize(stream_.get()));
-    return {batch_->answers.data(), poses.size()};
+    return {batch_->answers.host(), count};
   }
 
   static const LevelView& level_of(std::span<DeviceMeasure* const> measures,
                                    const JobOrder::Part& part) {
     return dynamic_cast<const RefinedOnDevice&>(*measures[part.tool]).level_.view();
   }
-  void make_room(std::span<DeviceMeasure* const> measures) {
+  void make_room(std::span<DeviceMeasure* const> measures, std::span<const JobOrder::Part> parts) {
     TeamRoom wanted = teams_ ? teams_->room : TeamRoom();
-    for (const JobOrder::Part& part : batch_->order.parts())
+    for (const JobOrder::Part& part : parts)
       wanted = wanted.with(TeamRoom(level_of(measures, part)));
     if (teams_ && teams_->room.holds(wanted)) return;
     teams_.reset();  // before more memory is taken
@@ -174,9 +237,9 @@ class RefinedOnDevice : public DeviceMeasure {
   }
   // Launches batches of as many tools as a launch has room for.
   template <class Surface>
-  void launch_batch(const Surface& surface, std::span<DeviceMeasure* const> measures) {
+  void launch_batch(const Surface& surface, std::span<DeviceMeasure* const> measures,
+                    std::span<const JobOrder::Part> parts) {
     BatchLaunch<Surface> arguments{{}, {}, surface, teams_->memory.space(), teams_->room};
-    std::span<const JobOrder::Part> parts = batch_->order.parts();
     for (unsigned begin = 0; !parts.empty();) {
       const std::size_t count = std::min<std::size_t>(arguments.kTools, parts.size());
       for (std::size_t t = 0; t < count; ++t) {
@@ -193,6 +256,7 @@ class RefinedOnDevice : public DeviceMeasure {
   }
 
   int device_;
+  ToolScale scale_;
   DeviceLevel level_;
   BodyKinds::OfSurfaces<PoseKernel> kernels_;
   Stream stream_;

@@ -6,6 +6,7 @@
 //   const vpm::Result r = query.run(scene, pose);                  // a thousand times a second
 #pragma once
 
+#include <vpm/device_batch.h>
 #include <vpm/error.h>
 #include <vpm/query_types.h>
 #include <vpm/scene.h>
@@ -69,6 +70,12 @@ class VPM_API Query {
   // coherent queries of several tools; otherwise as for one pose. After an error the results are
   // unspecified.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
+
+  // Begins to answer poses of the first tool that lie in the memory of the query's device, and
+  // returns before it has: neither poses nor answers pass through the host. The answers have the
+  // bits of run(). Throws Error(invalid_argument) unless the options name one CUDA device, and for
+  // a scene with solids, which the CPU measures; Error(unavailable) if the device fails.
+  DeviceResults run(const Scene& scene, const DevicePoses& poses);
 
   // Ends a motion of coherent poses: the next pose does not follow from the last.
   void forget();

@@ -18,6 +18,8 @@ from ._vpm import (
     Body,
     Contact,
     DepthStream,
+    DeviceArray,
+    DeviceResults,
     LevelQuery,
     Overlap,
     OverlapQuery,
@@ -46,7 +48,8 @@ from ._vpm import (
 )
 
 __all__ = [
-    "ArgumentError", "Body", "Contact", "DepthStream", "Error", "LevelQuery", "Overlap", "OverlapQuery", "PointCloud", "Query",
+    "ArgumentError", "Body", "Contact", "DepthStream", "DeviceArray",
+    "DeviceResults", "Error", "LevelQuery", "Overlap", "OverlapQuery", "PointCloud", "Query",
     "RefusedError", "Remark", "Result", "Results", "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh",
     "SpherePacking", "Tool", "ToolLevel",
     "UnavailableError", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
