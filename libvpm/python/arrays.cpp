@@ -58,6 +58,27 @@ std::vector<Pose> poses_of(const Numbers& numbers) {
   return poses;
 }
 
+std::vector<Pose> poses_of_moving_solids(const py::object& solids, std::size_t poses) {
+  if (solids.is_none()) return {};
+  Numbers numbers(solids);
+  if (numbers.ndim() < 3 || numbers.shape(0) != static_cast<py::ssize_t>(poses) ||
+      numbers.shape(1) == 0)
+    reject(
+        "`solids` must have the shape (N, S, 7) or (N, S, 4, 4): for each pose one of each "
+        "solid");
+  std::vector<py::ssize_t> shape(numbers.shape() + 1, numbers.shape() + numbers.ndim());
+  shape[0] *= numbers.shape(0);
+  return poses_of(numbers.reshape(shape));
+}
+
+std::vector<Job> jobs_of(const std::vector<Pose>& poses, std::span<const Pose> solids) {
+  std::vector<Job> jobs(poses.size());
+  const std::size_t moving = jobs.empty() ? 0 : solids.size() / jobs.size();
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    jobs[k] = {poses[k], 0, solids.subspan(k * moving, moving)};
+  return jobs;
+}
+
 Numbers matrix_of(const Pose& pose) {
   const auto& [r0, r1, r2] = pose.rotation;
   const Vec3 t = pose.translation;

@@ -31,6 +31,11 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Pose pose_of(const Numbers& numbers);
 // Returns N poses of N x 7, N x 4 x 4 or N x 3 x 4 numbers.
 std::vector<Pose> poses_of(const Numbers& numbers);
+// Returns the poses of all solids at N poses of the tool, one after another: N x S x 7 numbers, or
+// N x S matrices; none for None.
+std::vector<Pose> poses_of_moving_solids(const py::object& solids, std::size_t poses);
+// Returns the jobs of the first tool at poses, which refer to as many poses of the solids each.
+std::vector<Job> jobs_of(const std::vector<Pose>& poses, std::span<const Pose> solids);
 // Returns a pose as a matrix of 4 x 4 numbers.
 Numbers matrix_of(const Pose& pose);
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libvpm/python/arrays.h"
@@ -91,7 +92,27 @@ py::array column_of(const py::object& owner, const Vec3 Wrench::*member) {
   return column;
 }
 
-void bind_results(py::module_& module) {
+// Makes Python's enum of vpm::Collides, and returns it.
+py::object bind_collides(py::module_& module) {
+  py::dict values;
+  values["no"] = static_cast<int>(Collides::no);
+  values["yes"] = static_cast<int>(Collides::yes);
+  values["unknown"] = static_cast<int>(Collides::unknown);
+  py::object kind =
+      py::module_::import("enum").attr("IntEnum")("Collides", values, py::arg("module") = "vpm");
+  kind.attr("__doc__") =
+      "Whether a tool is in a scene's solid: no, yes or unknown, which is that nothing of the tool "
+      "is in it as far as anybody knows, but too much of the tool was not seen. Only `no` is "
+      "false, so that `if query.collides(...)` takes what was not seen for an obstacle.";
+  module.attr("Collides") = kind;
+  return kind;
+}
+
+constexpr const char* kUnseenLimitIs =
+    "unseen_limit: part of the tool that may be unseen or out of view where the answer is no, in "
+    "[0, 1].";
+
+void bind_results(py::module_& module, const py::object& collides_kind) {
   py::class_<Result>(module, "Result", "Answer of a query at one pose.")
       .def_readonly("volume", &Result::volume, "Volume of the tool inside the scene's solid, m^3.")
       .def_readonly("volume_fraction", &Result::volume_fraction,
@@ -124,6 +145,14 @@ void bind_results(py::module_& module) {
                     "In a scene with solids: how far the boundary of what is shared is from "
                     "closed, relative to the smaller radius, below 1e-8; the largest of all "
                     "solids. None without solids.")
+      .def(
+          "collides",
+          [collides_kind](const Result& result, double unseen_limit) {
+            return collides_kind(static_cast<int>(collides(result, unseen_limit)));
+          },
+          py::arg("unseen_limit") = kUnseenLimit,
+          (std::string("Returns what the answer says as vpm.Collides.\n\n") + kUnseenLimitIs)
+              .c_str())
       .def("__repr__", [](const Result& result) {
         const Vec3 f = result.wrench.force;
         return py::str(
@@ -167,7 +196,19 @@ void bind_results(py::module_& module) {
       .def_property_readonly(
           "inside", [](const py::object& self) { return column_of(self, &Result::inside); },
           "Array (N,) of spheres behind the surface that count.")
-      .def_property_readonly("closure", &closures_of, "Array (N,), NaN where a Result has None.");
+      .def_property_readonly("closure", &closures_of, "Array (N,), NaN where a Result has None.")
+      .def(
+          "collides",
+          [](const Results& results, double unseen_limit) {
+            py::array_t<std::uint8_t> found(static_cast<py::ssize_t>(results.answers.size()));
+            std::uint8_t* out = found.mutable_data();
+            for (const Result& result : results.answers)
+              *out++ = static_cast<std::uint8_t>(collides(result, unseen_limit));
+            return found;
+          },
+          py::arg("unseen_limit") = kUnseenLimit,
+          "Returns an array (N,) of vpm.Collides as numbers, 0 no, 1 yes, 2 unknown: those of "
+          "Result.collides().");
 }
 
 // Returns the poses of `solids`, of all of a scene at one pose of the tool; none for None.
@@ -178,37 +219,15 @@ std::vector<Pose> poses_of_solids(const py::object& solids) {
   return poses;
 }
 
-// Returns the poses of all solids at N poses of the tool, one after another: N x S x 7 numbers, or
-// N x S matrices.
-std::vector<Pose> poses_of_moving_solids(const py::object& solids, std::size_t poses) {
-  if (solids.is_none()) return {};
-  Numbers numbers(solids);
-  if (numbers.ndim() < 3 || numbers.shape(0) != static_cast<py::ssize_t>(poses) ||
-      numbers.shape(1) == 0)
-    reject(
-        "`solids` must have the shape (N, S, 7) or (N, S, 4, 4): for each pose one of each "
-        "solid");
-  std::vector<py::ssize_t> shape(numbers.shape() + 1, numbers.shape() + numbers.ndim());
-  shape[0] *= numbers.shape(0);
-  return poses_of(numbers.reshape(shape));
-}
-
-// Returns the jobs, which refer to the poses of the solids.
-std::vector<Job> jobs_of(const Numbers& numbers, const py::object& tool,
-                         std::span<const Pose> solids) {
-  const std::vector<Pose> poses = poses_of(numbers);
-  std::vector<Job> jobs(poses.size());
-  const std::size_t moving = jobs.empty() ? 0 : solids.size() / jobs.size();
-  for (std::size_t k = 0; k < jobs.size(); ++k)
-    jobs[k] = {poses[k], 0, solids.subspan(k * moving, moving)};
-  if (tool.is_none()) return jobs;
+// Sets the tools of jobs; those of None stay.
+void set_tools(std::vector<Job>& jobs, const py::object& tool) {
+  if (tool.is_none()) return;
   using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
   const Indices tools(tool);
   if (tools.ndim() != 1 || tools.shape(0) != static_cast<py::ssize_t>(jobs.size()))
     reject("`tool` must have the shape (N,), an index for each pose");
   for (std::size_t k = 0; k < jobs.size(); ++k)
     jobs[k].tool = tools.at(static_cast<py::ssize_t>(k));
-  return jobs;
 }
 
 py::array array_of(const std::vector<SphereState>& states) {
@@ -216,8 +235,8 @@ py::array array_of(const std::vector<SphereState>& states) {
                                    reinterpret_cast<const std::uint8_t*>(states.data()));
 }
 
-void bind_single_query(py::module_& module) {
-  using LockedQuery = Locked<Query>;
+void bind_single_query(py::module_& module, const py::object& collides_kind) {
+  using LockedQuery = ToolQuery<Query>;
   py::class_<LockedQuery>(
       module, "Query",
       "How much of a tool is inside a scene's solid, and which wrench pushes it out (Kaluschke, "
@@ -230,7 +249,7 @@ void bind_single_query(py::module_& module) {
              const QueryOptions options =
                  options_of(measure, level, device, coherent, shadows, stiffness, contacts);
              const py::gil_scoped_release unlocked;
-             return std::make_unique<LockedQuery>(list, options);
+             return std::make_unique<LockedQuery>(list, options, list, options);
            }),
            py::arg("tools"), py::kw_only(), py::arg("measure") = "refined", py::arg("level") = 0,
            py::arg("device") = "cpu", py::arg("coherent") = false, py::arg("shadows") = "near",
@@ -263,6 +282,32 @@ void bind_single_query(py::module_& module) {
           "of what is shared does not close; ArgumentError for another number of poses than of "
           "solids.")
       .def(
+          "collides",
+          [collides_kind](LockedQuery& self, const Scene& scene, const Numbers& pose,
+                          double unseen_limit, const py::object& solids) {
+            const Pose at = pose_of(pose);
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return collides_kind(static_cast<int>(self.ask(
+                [&](Query& query) { return query.collides(scene, at, unseen_limit, moved); })));
+          },
+          py::arg("scene"), py::arg("pose"), py::arg("unseen_limit") = kUnseenLimit,
+          py::arg("solids") = py::none(),
+          (std::string("Returns whether the first tool is in the scene's solid at a pose: "
+                       "run(...).collides() sooner, in a thirtieth of the time where the tool is "
+                       "inside. Leaves states() and parts() unspecified.\n\n") +
+           kUnseenLimitIs +
+           "\nsolids: as for run().\n\nRaises what run() raises, and ArgumentError "
+           "for a limit out of range.")
+              .c_str())
+      .def(
+          "another",
+          [](LockedQuery& self) {
+            return std::make_unique<LockedQuery>(
+                self.tools, self.options, self.ask([](Query& query) { return query.another(); }));
+          },
+          "Returns a query of the same tools and options for another thread, whose levels it "
+          "shares: threads with a query each do not wait for each other. Remembers no pose.")
+      .def(
           "parts",
           [](LockedQuery& self) { return self.ask([](Query& query) { return query.parts(); }); },
           "Returns a list with the vpm.Result that each body gave at the last single pose, in the "
@@ -278,7 +323,8 @@ void bind_single_query(py::module_& module) {
              const py::object& solids) {
             const auto count = static_cast<std::size_t>(poses.ndim() > 0 ? poses.shape(0) : 0);
             const std::vector<Pose> moved = poses_of_moving_solids(solids, count);
-            const std::vector<Job> jobs = jobs_of(poses, tool, moved);
+            std::vector<Job> jobs = jobs_of(poses_of(poses), moved);
+            set_tools(jobs, tool);
             return self.ask([&](Query& query) {
               Results results{std::vector<Result>(jobs.size())};
               query.run(scene, jobs, results.answers);
@@ -333,7 +379,7 @@ const char* text_of(LevelReason reason) {
 }
 
 void bind_level_query(py::module_& module) {
-  using LockedQuery = Locked<LevelQuery>;
+  using LockedQuery = ToolQuery<LevelQuery>;
   py::class_<LockedQuery>(module, "LevelQuery",
                           "A query at the level of detail that a request chooses.")
       .def(py::init([](const Tool& tool, const Scene& scene, const Numbers& first_pose,
@@ -345,7 +391,8 @@ void bind_level_query(py::module_& module) {
                  options_of(measure, 0, device, false, shadows, stiffness, contacts);
              const LevelRequest request{max_error, deadline_seconds, for_scene};
              const py::gil_scoped_release unlocked;
-             return std::make_unique<LockedQuery>(tool, options, request, scene, pose);
+             return std::make_unique<LockedQuery>(std::vector<Tool>{tool}, options, tool, options,
+                                                  request, scene, pose);
            }),
            py::arg("tool"), py::arg("scene"), py::arg("first_pose"), py::kw_only(),
            py::arg("max_error") = py::none(), py::arg("deadline_seconds") = py::none(),
@@ -416,13 +463,28 @@ void bind_setup_check(py::module_& module) {
       .def("remarks", &SetupCheck::remarks,
            "Returns a list with a warning and its cure if something is probably wrong, else an "
            "empty one. Known in part before the first pose.");
+  module.def(
+      "doubted_camera",
+      [](const std::vector<Body>& images) -> std::optional<std::pair<std::size_t, Remark>> {
+        const py::gil_scoped_release unlocked;
+        const std::optional<DoubtedCamera> doubted = doubted_camera(images);
+        if (!doubted) return std::nullopt;
+        return std::pair{doubted->camera, doubted->remark};
+      },
+      py::arg("images"),
+      "Returns the place in the list of a camera that is probably not where its pose tells, and "
+      "the "
+      "vpm.Remark that says why; None where there is none.\n\nimages: depth images that "
+      "Body.of_cameras() is to take. Takes a core 20 ms for four. Raises ArgumentError for a body "
+      "that is no depth image. Thread-safe.");
 }
 
 }  // namespace
 
 void bind_query(py::module_& module) {
-  bind_results(module);
-  bind_single_query(module);
+  const py::object collides_kind = bind_collides(module);
+  bind_results(module, collides_kind);
+  bind_single_query(module, collides_kind);
   bind_level_query(module);
   bind_setup_check(module);
 }

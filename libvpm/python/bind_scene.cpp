@@ -6,6 +6,14 @@
 #include <vpm/scene.h>
 #include <vpm/solid.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "libvpm/python/arrays.h"
 
 namespace vpm::python {
@@ -189,6 +197,86 @@ void bind_body(py::module_& module) {
       .def_property_readonly("bodies", &Scene::bodies, "List of the bodies.");
 }
 
+// Returns where solids were, of a pose each, and a margin for all or each.
+std::vector<SolidPlace> places_of(const Numbers& poses, const Numbers& margins) {
+  std::vector<SolidPlace> places;
+  for (const Pose& pose : poses_of(poses)) places.push_back({pose, 0});
+  const bool is_one = margins.ndim() == 0;
+  if (!is_one &&
+      (margins.ndim() != 1 || margins.shape(0) != static_cast<py::ssize_t>(places.size())))
+    reject("`margin` must be one number, m, or one for each solid");
+  for (std::size_t k = 0; k < places.size(); ++k) places[k].margin = margins.data()[is_one ? 0 : k];
+  return places;
+}
+
+// Returns the number of measured pixels that were removed from an image of float32, in place.
+std::size_t remove_from(SolidRemover& remover, const py::array& image, const Numbers& intrinsics,
+                        const Numbers& poses, const py::object& camera_pose,
+                        const Numbers& margin) {
+  using Metres = py::array_t<float, py::array::c_style>;
+  if (!py::isinstance<Metres>(image) || image.ndim() != 2 || !image.writeable())
+    reject("the image is written: it must be an array (height, width) of float32, row by row",
+           "give numpy.ascontiguousarray(image, numpy.float32)");
+  const Camera camera{intrinsics_of(intrinsics), static_cast<std::uint32_t>(image.shape(1)),
+                      static_cast<std::uint32_t>(image.shape(0)),
+                      camera_pose.is_none() ? Pose{} : pose_of(Numbers(camera_pose))};
+  const std::vector<SolidPlace> places = places_of(poses, margin);
+  const std::span<float> depth(static_cast<float*>(Metres(image).mutable_data()),
+                               static_cast<std::size_t>(image.size()));
+  const py::gil_scoped_release unlocked;
+  return remover.remove(places, camera, depth);
+}
+
+void bind_remover(py::module_& module) {
+  constexpr const char* kPlaces =
+      "poses: (S, 7) or (S, 4, 4), mesh to world at the time of the image, one for each solid. "
+      "margin: m, one number or (S,): no point of a solid was further from where its pose puts "
+      "it.\n\n";
+  py::class_<RemovedSolid>(module, "RemovedSolid",
+                           "What a depth image told of a solid that was removed from it.")
+      .def_readonly("in_view", &RemovedSolid::in_view,
+                    "Number of pixels that show the solid, if nothing is before it.")
+      .def_readonly("hidden", &RemovedSolid::hidden,
+                    "Number of those that were measured before it.")
+      .def_readonly("explained", &RemovedSolid::explained,
+                    "Number of those that were measured where it is. If many are neither hidden "
+                    "nor explained, the pose is probably another.")
+      .def_readonly("holds_camera", &RemovedSolid::holds_camera,
+                    "True if the camera is inside of the solid, which hides all then.");
+  py::class_<SolidRemover>(
+      module, "SolidRemover",
+      "Takes known solids at known poses, such as a robot's links and what its hand holds, out of "
+      "depth images before they are bodies. What they hid is unseen, not free and no contact; what "
+      "was measured before them stays. Belongs to one thread at a time.")
+      .def(py::init([](const std::vector<SolidBody>& solids) { return SolidRemover(solids); }),
+           py::arg("solids"),
+           "solids: list of vpm.SolidBody, which may be made with with_force=False.")
+      .def(
+          "remove",
+          [](SolidRemover& remover, const PointCloud& cloud, const Numbers& poses,
+             const Numbers& margin) {
+            const std::vector<SolidPlace> places = places_of(poses, margin);
+            const py::gil_scoped_release unlocked;
+            return remover.remove(places, cloud);
+          },
+          py::arg("cloud"), py::arg("poses"), py::arg("margin") = 0.0,
+          (std::string("Returns the cloud of a depth image without the pixels of the solids.\n\n") +
+           kPlaces +
+           "Raises ArgumentError for another number of poses than of solids, RefusedError for a "
+           "cloud that keeps no camera and for a pose that is none.")
+              .c_str())
+      .def("remove_from_image", &remove_from, py::arg("image"), py::arg("intrinsics"),
+           py::arg("poses"), py::arg("camera_pose") = py::none(), py::arg("margin") = 0.0,
+           (std::string("Marks the pixels in an array, as DepthStream.image() of metres, and "
+                        "returns the number of those that had been measured.\n\nimage: (height, "
+                        "width) of float32, m, which become -0. intrinsics: fx, fy, cx, cy, or a "
+                        "matrix (3, 3). camera_pose: camera to world.\n") +
+            kPlaces + "Raises the same.")
+               .c_str())
+      .def_property_readonly("found", &SolidRemover::found,
+                             "List with the vpm.RemovedSolid of each solid, of the last image.");
+}
+
 // A stream with the size of its images.
 struct SizedStream {
   DepthStream stream;
@@ -248,6 +336,7 @@ void bind_stream(py::module_& module) {
 void bind_scene(py::module_& module) {
   bind_cloud(module);
   bind_body(module);
+  bind_remover(module);
   bind_stream(module);
 }
 

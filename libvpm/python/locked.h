@@ -2,9 +2,12 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <vpm/query_types.h>
+#include <vpm/tool.h>
 
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace vpm::python {
 
@@ -25,6 +28,17 @@ struct Locked {
 
   Asked query;
   std::mutex busy;
+};
+
+// The same, with what the query was made of, which pages show.
+template <class Asked>
+struct ToolQuery : Locked<Asked> {
+  template <class... Arguments>
+  ToolQuery(std::vector<Tool> of, const QueryOptions& with, Arguments&&... arguments)
+      : Locked<Asked>(std::forward<Arguments>(arguments)...), tools(std::move(of)), options(with) {}
+
+  std::vector<Tool> tools;
+  QueryOptions options;
 };
 
 }  // namespace vpm::python

@@ -193,6 +193,97 @@ def test_cameras_are_one_body(tool):
         vpm.Body.of_cameras([left, vpm.Body(vpm.SolidBody(tool))])
 
 
+def test_a_camera_that_contradicts_another_is_named():
+    def camera(pose):
+        return vpm.Body(vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K, camera_pose=pose))
+
+    left, right = camera([-0.05, 0, 0, 0, 0, 0, 1]), camera([0.05, 0, 0, 0, 0, 0, 1])
+    assert vpm.doubted_camera([left, right]) is None
+    place, remark = vpm.doubted_camera([left, camera([0.05, 0, 0.2, 0, 0, 0, 1]), right])
+    assert place == 1 and remark.is_warning and remark.text
+    with pytest.raises(vpm.ArgumentError, match="depth images"):
+        vpm.doubted_camera([left, vpm.Body(vpm.SolidBody(vpm.solid_of((CUBE, FACES))))])
+
+
+def test_only_what_was_seen_to_be_free_is_no_collision(tool, scene):
+    query = vpm.Query(tool)
+    poses = np.array([[0, 0, z, 0, 0, 0, 1] for z in (0.7, 1.0, -1.0)])  # free, in the wall, behind the camera
+    expected = [vpm.Collides.no, vpm.Collides.yes, vpm.Collides.unknown]
+    assert [query.collides(scene, pose) for pose in poses] == expected
+    assert [query.run(scene, pose).collides() for pose in poses] == expected
+    assert list(query.run_batch(scene, poses).collides()) == expected
+    assert not query.collides(scene, poses[0]) and query.collides(scene, poses[2])
+    assert query.collides(scene, poses[2], unseen_limit=1) is vpm.Collides.no
+    assert list(query.run_batch(scene, poses).collides(1)) == [0, 1, 0]
+    with pytest.raises(vpm.ArgumentError):
+        query.collides(scene, poses[0], unseen_limit=1.5)
+    solid = vpm.Scene([vpm.Body(vpm.SolidBody(tool), poses[1])])
+    assert not query.collides(solid, poses[0]) and query.collides(solid, poses[0], solids=poses[:1])
+
+
+def test_another_query_has_the_options_of_the_first(tool, scene):
+    poses = poses_into_the_wall(20)
+    query = vpm.Query(tool, stiffness=300, contacts=2, level=40)
+    expected = query.run_batch(scene, poses)
+    others, answers = [query.another() for _ in range(3)], {}
+
+    def ask(k):
+        answers[k] = [others[k].run(scene, pose).force for pose in poses]
+
+    threads = [threading.Thread(target=ask, args=[k]) for k in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(answers[k], expected.force) for k in range(3))
+    assert others[0].level() == 40 and len(others[0].contacts()) == len(query.another().contacts()) + 1
+
+
+@pytest.fixture
+def held_cube():
+    """Depth image of the cube, with its centre at 0.6 m, before a wall at about 1 m; and the cube's pose."""
+    image = np.tile(np.linspace(1, 1.1, 60, dtype=np.float32), (60, 1))
+    image[18:42, 18:42] = 0.5  # the pixels whose rays meet the face at 0.5 m
+    return image, np.array([[0, 0, 0.6, 0, 0, 0, 1.0]])
+
+
+def test_a_solid_that_is_removed_is_unseen_and_no_contact(tool, held_cube):
+    image, at = held_cube
+    cloud, query = vpm.import_depth(image, intrinsics=K), vpm.Query(tool)
+    assert query.run(vpm.Scene(cloud), at[0]).volume_fraction > 0.5
+    remover = vpm.SolidRemover([vpm.SolidBody(tool, with_force=False)])
+    rest = remover.remove(cloud, at)
+    found, = remover.found
+    assert (found.explained, found.hidden, found.holds_camera) == (576, 0, False)
+    assert 576 <= found.in_view <= 26 * 26  # with the pixels whose squares it meets
+    assert len(rest) < len(cloud)
+    result = query.run(vpm.Scene(rest), at[0])
+    assert result.volume == 0 and result.unseen > 0.9 and result.collides() is vpm.Collides.unknown
+    # What is before the solid stays, unless the margin reaches there.
+    behind = at + [0, 0, 0.05, 0, 0, 0, 0]
+    assert query.run(vpm.Scene(remover.remove(cloud, behind)), at[0]).volume > 0 and remover.found[0].hidden > 400
+    assert query.run(vpm.Scene(remover.remove(cloud, behind, margin=[0.06])), at[0]).volume == 0
+
+
+def test_a_solid_is_removed_from_the_image_of_a_stream(tool, held_cube):
+    image, at = held_cube
+    remover = vpm.SolidRemover([vpm.SolidBody(tool)])
+    stream = vpm.DepthStream(K, 60, 60)
+    metres = stream.image()
+    metres[:] = image
+    removed = remover.remove_from_image(metres, K, at)
+    gone = (metres == 0) & np.signbit(metres)
+    assert removed == gone.sum() >= 576 and gone[18:42, 18:42].all() and np.array_equal(metres[~gone], image[~gone])
+    result = vpm.Query(tool).run(vpm.Scene(stream.prepare(np.eye(4))), at[0])
+    assert result.volume == 0 and result.unseen > 0.9
+    for wrong in (image.astype(float), image.T[:, ::2], image.ravel()):
+        with pytest.raises(vpm.ArgumentError, match="float32"):
+            remover.remove_from_image(wrong, K, at)
+    for poses, margin in ((np.repeat(at, 2, axis=0), 0), (at, [0, 0]), (at, -1), (at[:0], 0)):
+        with pytest.raises(vpm.ArgumentError):
+            remover.remove_from_image(image, K, poses, margin=margin)
+
+
 def test_threads_share_a_query(tool, scene):
     poses = poses_into_the_wall(40)
     query = vpm.Query(tool)

@@ -16,6 +16,7 @@ from . import _vpm
 from ._errors import ArgumentError, Error, RefusedError, SetupWarning, UnavailableError, WriteError
 from ._vpm import (
     Body,
+    Collides,
     Contact,
     DepthStream,
     DeviceArray,
@@ -26,12 +27,14 @@ from ._vpm import (
     PointCloud,
     Query,
     Remark,
+    RemovedSolid,
     Result,
     Results,
     Scene,
     SetupCheck,
     SolidBody,
     SolidMesh,
+    SolidRemover,
     SpherePacking,
     Tool,
     ToolLevel,
@@ -42,19 +45,19 @@ from ._vpm import (
     critical_mass,
     cuda_device_count,
     device_name,
+    doubted_camera,
     pack,
     set_thread_count,
     stable_rate,
 )
 
 __all__ = [
-    "ArgumentError", "Body", "Contact", "DepthStream", "DeviceArray",
-    "DeviceResults", "Error", "LevelQuery", "Overlap", "OverlapQuery", "PointCloud", "Query",
-    "RefusedError", "Remark", "Result", "Results", "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh",
-    "SpherePacking", "Tool", "ToolLevel",
+    "ArgumentError", "Body", "Collides", "Contact", "DepthStream", "DeviceArray", "DeviceResults", "Error", "LevelQuery",
+    "Overlap", "OverlapQuery", "PointCloud", "Query", "RefusedError", "Remark", "RemovedSolid", "Result", "Results",
+    "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh", "SolidRemover", "SpherePacking", "Tool", "ToolLevel",
     "UnavailableError", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
-    "cuda_device_count", "device_name", "import_cloud", "import_depth", "make_tool", "pack", "set_thread_count",
-    "overlap", "solid_of", "stable_rate",
+    "cuda_device_count", "device_name", "doubted_camera", "import_cloud", "import_depth", "make_tool", "overlap",
+    "pack", "set_thread_count", "solid_of", "stable_rate",
 ]
 
 
