@@ -73,6 +73,7 @@ void bind_overlap(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_query(py::module_& module);
 void bind_device_arrays(py::module_& module);  // after bind_query
+void bind_view(py::module_& module);
 void bind_haptics(py::module_& module);
 
 }  // namespace vpm::python

@@ -102,8 +102,8 @@ py::object bind_collides(py::module_& module) {
       py::module_::import("enum").attr("IntEnum")("Collides", values, py::arg("module") = "vpm");
   kind.attr("__doc__") =
       "Whether a tool is in a scene's solid: no, yes or unknown, which is that nothing of the tool "
-      "is in it as far as anybody knows, but too much of the tool was not seen. Only `no` is "
-      "false, so that `if query.collides(...)` takes what was not seen for an obstacle.";
+      "is in it as far as anybody knows, but too much of the tool was not seen. Only no is "
+      "false, so that an if takes what was not seen for an obstacle.";
   module.attr("Collides") = kind;
   return kind;
 }

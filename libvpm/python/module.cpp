@@ -66,6 +66,7 @@ PYBIND11_MODULE(_vpm, module) {
   bind_scene(module);
   bind_query(module);
   bind_device_arrays(module);
+  bind_view(module);
   bind_haptics(module);
   module.attr("__name__") = own_name;
 }

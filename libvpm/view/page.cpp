@@ -88,7 +88,7 @@ std::uint32_t stride_for(const DepthImage& image, std::size_t most) {
 void check_available() {
   if (kPageHead.empty())
     throw Error(ErrorKind::unavailable,
-                "--view: this build draws no pages, because three.js was not found; install it "
+                "this build draws no pages, because three.js was not found; install it "
                 "(Debian: libjs-three) and build again");
 }
 

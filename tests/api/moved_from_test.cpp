@@ -6,6 +6,7 @@
 #include <vpm/query.h>
 #include <vpm/setup_check.h>
 #include <vpm/solid.h>
+#include <vpm/view.h>
 #include <vpm/virtual_coupling.h>
 
 #include <functional>
@@ -165,6 +166,21 @@ TEST(MovedFrom, LevelQuery) {
                                   {[](auto& q) { q.run(scene, kPose); }, [](auto& q) { q.level(); },
                                    [](auto& q) { q.seconds(); }, [](auto& q) { q.reason(); },
                                    [](auto& q) { q.scale(); }, [](auto& q) { q.states(); }});
+}
+
+TEST(MovedFrom, View) {
+  static const vpm::Scene scene(cloud());
+  static vpm::Query query(tool());
+  try {
+    expect_refused<vpm::View>(
+        vpm::View(std::vector<vpm::Tool>{tool()}, {"tool"}), "View",
+        {[](auto& v) { v.add_scene(scene); }, [](auto& v) { v.add({kPose}, vpm::Result{}, query); },
+         [](auto& v) { v.add_batch(query, scene, {}); }, [](auto& v) { v.html(); },
+         [](auto& v) { v.write(kNowhere); }});
+  } catch (const vpm::Error& error) {
+    if (error.kind() != vpm::ErrorKind::unavailable) throw;
+    GTEST_SKIP() << error.what();
+  }
 }
 
 TEST(MovedFrom, DepthStream) {

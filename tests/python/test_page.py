@@ -3,12 +3,19 @@ import os
 import pathlib
 import re
 
+import pytest
+
 PAGE = pathlib.Path(os.environ["VPM_SOURCE"]) / "libvpm/python/README.md"
 
 
-def test_the_page_runs():
+def test_the_page_runs(tmp_path, monkeypatch):
     blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.MULTILINE | re.DOTALL)
-    assert len(blocks) == 8
+    assert len(blocks) == 10
+    monkeypatch.chdir(tmp_path)  # where it saves its files
     namespace = {}
     for number, block in enumerate(blocks):
-        exec(compile(block, f"{PAGE}, block {number + 1}", "exec"), namespace)
+        try:
+            exec(compile(block, f"{PAGE}, block {number + 1}", "exec"), namespace)
+        except namespace["vpm"].UnavailableError as error:
+            assert "draws no pages" in str(error) and number + 1 == len(blocks)
+            pytest.skip(str(error))

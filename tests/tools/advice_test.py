@@ -97,7 +97,7 @@ UNTRIED = [
         "give the .vpmg that vpm-pack and vpm-graph make of it",
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",
         "build it where libtiff is installed, or convert the image to a 16-bit PNG", "save it as OBJ, OFF, PLY or STL",
-        "--view: this build draws no pages, because three.js was not found; install it (Debian: libjs-three) and build again",
+        "this build draws no pages, because three.js was not found; install it (Debian: libjs-three) and build again",
         "scaling: this build has no CUDA; build with cmake --preset cuda", "leave the device or the other measure out",
         "scaling times one CUDA device; use --device cuda or cuda:N, or leave the option out", "use `device` cpu if this persists",
         "); use --device cpu, or leave the option out", "computes on the CPU only; use --device cpu, or leave the option out",

@@ -82,7 +82,7 @@ struct CoupledRun {
 
 // Moves the device along the path and writes a line for each step.
 CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelQuery& query,
-                  CloudScene& scene, std::optional<PoseView>& view, ResultOutput& output) {
+                  CloudScene& scene, std::optional<View>& view, ResultOutput& output) {
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};

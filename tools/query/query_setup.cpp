@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "libvpm/file/stream.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/view/pose_view.h"
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/mesh_tool.h"
 #include "tools/common/number_checks.h"
@@ -86,7 +88,10 @@ QuerySetup::QuerySetup(const Program& p, const Arguments& a)
   if (!solids.empty()) check_surfaces(tools, a.tools);
   options = query_options(program, a);
   if (a.view.empty()) return;
-  view.emplace(a.view, tools, a.tools, options);
+  view.emplace(tools, a.tools, options, "vpm-query");
+  for (std::size_t k = 0; k < tools.size(); ++k)
+    if (a.tools[k] != "-" && !is_mesh_file(a.tools[k]))
+      view::PoseView::of(*view).set_mesh(k, read_display_mesh(a.tools[k]));
   for (std::size_t k = 0; k < solids.size(); ++k)
     view->add_solid(solid_from_text(a.solids[k], "--solid").name, solids[k]);
 }
@@ -131,7 +136,7 @@ void write_stats_and_view(const QuerySetup& setup, nlohmann::json stats) {
     stats["measure"] = a.measure;
     file::write_all(a.stats, stats.dump(2) + "\n");
   }
-  if (setup.view) setup.view->write();
+  if (setup.view) setup.view->write(a.view);
 }
 
 }  // namespace vpm::tools

@@ -4,6 +4,7 @@
 #include <vpm/level_query.h>
 #include <vpm/remark.h>
 #include <vpm/tool.h>
+#include <vpm/view.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,7 +12,6 @@
 
 #include "tools/query/arguments.h"
 #include "tools/query/collisions.h"
-#include "tools/query/pose_view.h"
 
 namespace vpm::tools {
 
@@ -28,10 +28,10 @@ struct QuerySetup {
   LevelRequest level;
   std::vector<Tool> tools;  // one per --tool
   QueryOptions options;
-  std::vector<Body> solids;      // one per --solid
-  Denoising points;              // how points without a camera are read
-  std::optional<PoseView> view;  // empty without --view
-  Collisions collisions;         // of all lines of results
+  std::vector<Body> solids;  // one per --solid
+  Denoising points;          // how points without a camera are read
+  std::optional<View> view;  // empty without --view
+  Collisions collisions;     // of all lines of results
 };
 
 // Prints what the checks of a setup say.

@@ -26,7 +26,6 @@
 #include "tools/query/coupling.h"
 #include "tools/query/frame_removal.h"
 #include "tools/query/mode.h"
-#include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
 #include "tools/query/result_output.h"
@@ -59,7 +58,10 @@ class Replay {
   // and warnings about frames as they happen. The first `passed` steps are not asked.
   void run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
            Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
-           std::optional<PoseView>& view);
+           std::optional<View>& view);
+
+  // Reads a frame again, for the page.
+  PointCloud cloud_of(std::size_t frame) const;
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -91,7 +93,7 @@ class Replay {
   // Shows the step that was asked last to the checks and the view, and writes
   // its lines.
   void tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-            Collisions& collisions, ResultOutput& output, std::optional<PoseView>& view) const;
+            Collisions& collisions, ResultOutput& output, std::optional<View>& view) const;
   std::string frame_name() const;
   // Returns step k of a tool, without rendered wrench and energy if there is no
   // coupling.
@@ -240,6 +242,12 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   }
 }
 
+PointCloud Replay::cloud_of(std::size_t frame) const {
+  ImportedScan scan = read_frame(recording_.frames[frame], import_);
+  if (scan.image) scan.points.sensor = std::move(scan.image);
+  return HandleAccess::make<PointCloud>(std::move(scan.points));
+}
+
 void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling) {
   now_.clear();
   for (std::size_t tool = 0; tool < tools_; ++tool) {
@@ -250,8 +258,7 @@ void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoup
 }
 
 void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-                  Collisions& collisions, ResultOutput& output,
-                  std::optional<PoseView>& view) const {
+                  Collisions& collisions, ResultOutput& output, std::optional<View>& view) const {
   std::vector<Pose> solids;  // for the view alone
   if (view) {
     view->see_frame(feed_->frame());
@@ -276,8 +283,8 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
 
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
-                 std::optional<PoseView>& view) {
-  if (view) view->set_frames(arguments_.frames, recording_, import_);
+                 std::optional<View>& view) {
+  if (view) view->set_frames(arguments_.frames, [this](std::size_t k) { return cloud_of(k); });
   if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();

@@ -38,6 +38,7 @@ from ._vpm import (
     SpherePacking,
     Tool,
     ToolLevel,
+    View,
     VirtualCoupling,
     __version__,
     build_tool,
@@ -55,7 +56,7 @@ __all__ = [
     "ArgumentError", "Body", "Collides", "Contact", "DepthStream", "DeviceArray", "DeviceResults", "Error", "LevelQuery",
     "Overlap", "OverlapQuery", "PointCloud", "Query", "RefusedError", "Remark", "RemovedSolid", "Result", "Results",
     "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh", "SolidRemover", "SpherePacking", "Tool", "ToolLevel",
-    "UnavailableError", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
+    "UnavailableError", "View", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
     "cuda_device_count", "device_name", "doubted_camera", "import_cloud", "import_depth", "make_tool", "overlap",
     "pack", "set_thread_count", "solid_of", "stable_rate",
 ]

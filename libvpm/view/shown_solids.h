@@ -1,4 +1,4 @@
-// Solids of a scene on the page of vpm-query --view.
+// Solids of a scene on a page of poses.
 #pragma once
 
 #include <vpm/pose.h>
@@ -11,7 +11,7 @@
 
 #include "libvpm/view/page.h"
 
-namespace vpm::tools {
+namespace vpm::view {
 
 class ShownSolids {
  public:
@@ -22,8 +22,9 @@ class ShownSolids {
   // Returns the names as a page shows them.
   std::vector<std::string> names() const;
   // Adds a layer for each solid. `poses` has those of all solids at each step, mesh to world; none
-  // at a step where the solids are where they were made.
-  void add_to(view::Page& page, const std::vector<std::vector<Pose>>& poses) const;
+  // at a step where the solids are where they were made. Throws Error(invalid_argument) for another
+  // number of them.
+  void add_to(Page& page, const std::vector<std::vector<Pose>>& poses) const;
 
  private:
   struct Named {
@@ -34,4 +35,4 @@ class ShownSolids {
   std::vector<Named> solids_;
 };
 
-}  // namespace vpm::tools
+}  // namespace vpm::view

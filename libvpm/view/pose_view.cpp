@@ -1,4 +1,4 @@
-#include "tools/query/pose_view.h"
+#include "libvpm/view/pose_view.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,9 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
-#include "libvpm/model/tool_model.h"
-#include "libvpm/recording/frame_feed.h"
 #include "libvpm/view/pose_path.h"
-#include "tools/common/mesh_tool.h"
 
-namespace vpm::tools {
+namespace vpm::view {
 namespace {
 
 // Most bytes of states that a page holds, and the limits of the number of its steps.
@@ -50,59 +47,51 @@ Vec3 image_up(const Camera& camera) {
   return camera.to_world.rotation * Vec3{0, -1, 0};
 }
 
+// Returns the image of a cloud that has one. The cloud must outlive it.
+ImageView image_of(const PointCloud& cloud) {
+  const CloudSensor& sensor = *HandleAccess::held(cloud).sensor;
+  return {&sensor.depth, sensor.camera};
+}
+
 }  // namespace
 
-PoseView::PoseView(std::string path, std::span<const Tool> tools, std::vector<std::string> names,
-                   const QueryOptions& options)
-    : path_(std::move(path)),
+PoseView::PoseView(std::span<const Tool> tools, std::vector<std::string> names,
+                   const QueryOptions& options, std::string program)
+    : program_(std::move(program)),
+      tools_(tools.begin(), tools.end()),
       names_(std::move(names)),
       options_(options),
       levels_(tools.size(), 0) {
-  view::check_available();
-  for (const Tool& tool : tools) models_.push_back(&HandleAccess::held(tool));
-  for (std::string& name : names_) {
-    const bool is_model = name != "-" && !is_mesh_file(name);
-    meshes_.push_back(is_model ? read_display_mesh(name) : models_[meshes_.size()]->surface);
-    name = view::shown_name(name);
-  }
+  check_available();
+  if (tools_.empty() || names_.size() != tools_.size())
+    throw Error(ErrorKind::invalid_argument, "a view needs a tool, and a name for each");
+  for (std::string& name : names_) name = shown_name(name);
   std::size_t row = 0;
-  for (const ToolModel* model : models_) row += model->spheres.size() / 4 + 1;
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    meshes_.push_back(model_of(t).surface);
+    row += model_of(t).spheres.size() / 4 + 1;
+  }
   most_steps_ = std::clamp(kStateBytes / row, kFewestSteps, kMostSteps);
 }
 
+const ToolModel& PoseView::model_of(std::size_t tool) const {
+  return HandleAccess::held(tools_[tool]);
+}
+
 void PoseView::add_cloud(const std::string& name, const PointCloud& cloud) {
-  clouds_.emplace_back(view::shown_name(name), cloud);
+  clouds_.emplace_back(shown_name(name), cloud);
 }
 
-void PoseView::set_frames(const std::string& name, const Recording& recording,
-                          const ImportOptions& options) {
-  recording_name_ = view::shown_name(name);
-  recording_ = &recording;
-  import_ = options;
+void PoseView::set_frames(const std::string& name, Frames frames) {
+  frames_name_ = shown_name(name);
+  frames_ = std::move(frames);
 }
 
-void PoseView::add(const Job& job, const Result& result, const LevelQuery& query) {
-  const std::size_t tool = job.tool;
-  Answer answer{job.pose, result, {}, {}};
-  if (options_.contacts > 0) answer.contacts = query.contacts(tool);
-  for (const SphereState state : query.states(tool))
-    answer.states.push_back(static_cast<std::uint8_t>(state));
-  levels_[tool] = std::max(levels_[tool], query.level(tool));
-  if (tool == 0) current_ = {seen_, frame_, {job.solids.begin(), job.solids.end()}, {}};
+void PoseView::add(const Job& job, Answer answer, std::uint32_t level) {
+  levels_[job.tool] = std::max(levels_[job.tool], level);
+  if (job.tool == 0) current_ = {seen_, frame_, {job.solids.begin(), job.solids.end()}, {}};
   current_.answers.push_back(std::move(answer));
-  if (tool + 1 == models_.size()) keep(std::move(current_));
-}
-
-void PoseView::add_batch(LevelQuery& query, const Scene& scene, std::span<const Job> jobs) {
-  for (std::size_t k = 0; k < jobs.size(); ++k) {
-    if (!keeps_next() && k + 1 < jobs.size()) {
-      ++seen_;
-      continue;
-    }
-    Job job = jobs[k];
-    for (job.tool = 0; job.tool < models_.size(); ++job.tool)
-      add(job, query.run(scene, job.pose, job.tool, job.solids), query);
-  }
+  if (job.tool + 1 == tools_.size()) keep(std::move(current_));
 }
 
 // Adds a step if its turn has come. Drops every second of those that were kept if there are too
@@ -124,69 +113,66 @@ std::vector<PoseView::Step> PoseView::kept() const {
   return steps;
 }
 
-void PoseView::add_facts(view::Page& page) const {
+void PoseView::add_facts(Page& page) const {
   std::string summary = options_.measure == Measure::paper ? "paper" : "refined";
-  for (std::size_t t = 0; t < models_.size(); ++t)
+  for (std::size_t t = 0; t < tools_.size(); ++t)
     summary += ", " + std::to_string(levels_[t]) + " of " +
-               std::to_string(models_[t]->spheres.size()) + " spheres";
+               std::to_string(model_of(t).spheres.size()) + " spheres";
   page.set_summary(summary);
-  for (std::size_t t = 0; t < models_.size(); ++t) {
-    page.add_fact("tool", names_[t] + maker_of(models_[t]->provenance.json()));
+  for (std::size_t t = 0; t < tools_.size(); ++t) {
+    page.add_fact("tool", names_[t] + maker_of(model_of(t).provenance.json()));
     page.add_fact("level", std::to_string(levels_[t]) + " of " +
-                               std::to_string(models_[t]->spheres.size()) + " spheres");
+                               std::to_string(model_of(t).spheres.size()) + " spheres");
   }
   for (const auto& [name, cloud] : clouds_)
     page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance.json()));
   for (const std::string& name : solids_.names()) page.add_fact("solid", name);
-  if (recording_ != nullptr) page.add_fact("frames", recording_name_);
+  if (frames_) page.add_fact("frames", frames_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
-  if (options_.stiffness != 1)
-    page.add_fact("stiffness", view::with_unit(options_.stiffness, "N/m³"));
+  if (options_.stiffness != 1) page.add_fact("stiffness", with_unit(options_.stiffness, "N/m³"));
   if (every_ > 1)
     page.add_fact("poses", "one in " + std::to_string(every_) + " of " + std::to_string(seen_));
 }
 
-std::vector<Camera> PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const {
+std::vector<Camera> PoseView::add_scene(Page& page, const std::vector<Step>& steps) const {
   for (const auto& [name, handle] : clouds_) {
-    const Cloud& cloud = HandleAccess::held(handle);
     const std::string of = clouds_.size() > 1 ? " of " + name : "";
-    if (cloud.sensor) {
-      const view::ImageView image{&cloud.sensor->depth, cloud.sensor->camera};
+    if (handle.camera()) {
+      const ImageView image = image_of(handle);
       page.add_image("measured surface" + of, {&image, 1}, {});
     } else {
-      page.add_points("measured points" + of, cloud);
+      page.add_points("measured points" + of, HandleAccess::held(handle));
     }
   }
   std::vector<std::vector<Pose>> poses_of_solids;
   for (const Step& step : steps) poses_of_solids.push_back(step.solids);
   solids_.add_to(page, poses_of_solids);
-  return recording_ != nullptr ? add_frames(page, steps) : std::vector<Camera>();
+  return frames_ ? add_frames(page, steps) : std::vector<Camera>();
 }
 
 // Reads the frames that the steps saw again, as many as a page holds, and adds them.
-std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) const {
+std::vector<Camera> PoseView::add_frames(Page& page, const std::vector<Step>& steps) const {
   std::set<std::size_t> seen;
   for (const Step& step : steps)
     if (step.frame) seen.insert(*step.frame);
   std::vector<std::size_t> frames(seen.begin(), seen.end());
   const std::size_t every = (frames.size() + kMostFrames - 1) / kMostFrames;
   std::vector<std::size_t> shown;
-  std::vector<ImportedScan> scans;
+  std::vector<PointCloud> clouds;
   for (std::size_t k = 0; k < frames.size(); k += every) {
-    const RecordedFrame& frame = recording_->frames[frames[k]];
-    ImportedScan scan = read_frame(frame, import_);
-    if (!scan.image) {
-      page.add_points("measured points of " + view::shown_name(frame.path), scan.points);
+    PointCloud cloud = frames_(frames[k]);
+    if (!cloud.camera()) {
+      page.add_points("measured points", HandleAccess::held(cloud));
       page.add_note("The frames are clouds without a camera: the first one is shown.");
       return {};
     }
     shown.push_back(frames[k]);
-    scans.push_back(std::move(scan));
+    clouds.push_back(std::move(cloud));
   }
-  if (scans.empty()) return {};
-  std::vector<view::ImageView> images;
-  for (const ImportedScan& scan : scans) images.push_back({&scan.image->depth, scan.image->camera});
+  if (clouds.empty()) return {};
+  std::vector<ImageView> images;
+  for (const PointCloud& cloud : clouds) images.push_back(image_of(cloud));
   std::vector<std::uint32_t> of_step;
   std::vector<Camera> cameras;
   for (const Step& step : steps) {
@@ -196,7 +182,7 @@ std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Ste
     cameras.push_back(images[of_step.back()].camera);
   }
   std::uint32_t stride = 1;
-  const std::size_t pixels = scans.size() * scans[0].image->depth.depth.size();
+  const std::size_t pixels = images.size() * images[0].depth->depth.size();
   while (pixels / stride / stride > kFramePixels) ++stride;
   page.add_image("measured surface", images, of_step, false, stride);
   if (every > 1)
@@ -208,11 +194,11 @@ std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Ste
 namespace {
 
 // Adds what the camera knows of a tool, if the answers of all steps tell it.
-void add_visibility(view::Page& page, std::span<const Result> answers, std::size_t body) {
+void add_visibility(Page& page, std::span<const Result> answers, std::size_t body) {
   const auto tells = [](const Result& r) { return r.visibility.has_value(); };
   if (!std::ranges::all_of(answers, tells)) return;
   const auto add = [&](const char* name, double Visibility::*part) {
-    view::Column column{name, "%", 1, {}, body};
+    Column column{name, "%", 1, {}, body};
     for (const Result& r : answers)
       column.values.push_back(static_cast<float>(100 * (*r.visibility).*part));
     page.add_column(column);
@@ -224,10 +210,10 @@ void add_visibility(view::Page& page, std::span<const Result> answers, std::size
 
 }  // namespace
 
-std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& steps,
-                                  std::size_t tool, std::size_t body) const {
+std::size_t PoseView::add_numbers(Page& page, const std::vector<Step>& steps, std::size_t tool,
+                                  std::size_t body) const {
   const bool has_stiffness = options_.stiffness != 1;
-  view::Column volume{"volume", "m3", 1, {}, body}, fraction{"of the tool", "%", 1, {}, body},
+  Column volume{"volume", "m3", 1, {}, body}, fraction{"of the tool", "%", 1, {}, body},
       force{has_stiffness ? "force" : "force / stiffness", has_stiffness ? "N" : "m3", 3, {}, body},
       torque{has_stiffness ? "torque" : "torque / stiffness",
              has_stiffness ? "Nm" : "m4",
@@ -236,7 +222,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
              body},
       boundary{"boundary spheres", "", 1, {}, body}, inside{"inside spheres", "", 1, {}, body},
       points{"points in spheres", "", 1, {}, body};
-  const auto add = [](view::Column& column, std::initializer_list<double> values) {
+  const auto add = [](Column& column, std::initializer_list<double> values) {
     for (const double x : values) column.values.push_back(static_cast<float>(x));
   };
   std::vector<Result> answers;
@@ -258,7 +244,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   page.add_column(boundary);
   page.add_column(inside);
   if (points.values.size() == steps.size()) page.add_column(points);
-  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  const std::string of = tools_.size() > 1 ? " of " + names_[tool] : "";
   page.add_arrow("force" + of, kForceColor, body, force_column, false);
   page.add_arrow("torque" + of, kTorqueColor, body, torque_column, true);
   return volume_column;
@@ -266,15 +252,15 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
 
 // Adds the contacts of each step: their number, and a line from each centroid against the normal,
 // as long as the contact is deep.
-void PoseView::add_contacts(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+void PoseView::add_contacts(Page& page, const std::vector<Step>& steps, std::size_t tool,
                             std::size_t body) const {
-  view::Column numbers{"contacts", "", 1, {}, body};
-  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  Column numbers{"contacts", "", 1, {}, body};
+  const std::string of = tools_.size() > 1 ? " of " + names_[tool] : "";
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const std::vector<Contact>& contacts = steps[k].answers[tool].contacts;
     numbers.values.push_back(static_cast<float>(contacts.size()));
     if (contacts.empty()) continue;
-    view::LinesView lines{.name = "contacts" + of, .color = kContactColor, .ends = {}};
+    LinesView lines{.name = "contacts" + of, .color = kContactColor, .ends = {}};
     for (const Contact& c : contacts)
       lines.ends.insert(lines.ends.end(), {c.centroid, c.centroid - c.depth * c.normal});
     lines.count = contacts.size(), lines.marks = lines.above = true, lines.step = k;
@@ -285,26 +271,26 @@ void PoseView::add_contacts(view::Page& page, const std::vector<Step>& steps, st
 
 // True if the poses follow each other: as steps in time do, and others by where they lie.
 bool PoseView::are_path(const std::vector<Step>& steps) const {
-  if (recording_ != nullptr || options_.coherent) return true;
+  if (frames_ || options_.coherent) return true;
   std::vector<Vec3> places;
   for (const Step& step : steps)
-    places.push_back(step.answers[0].pose * models_[0]->center_of_mass);
-  return view::is_path(places);
+    places.push_back(step.answers[0].pose * model_of(0).center_of_mass);
+  return is_path(places);
 }
 
-std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+std::size_t PoseView::add_tool(Page& page, const std::vector<Step>& steps, std::size_t tool,
                                bool is_joined) const {
-  const ToolModel& model = *models_[tool];
+  const ToolModel& model = model_of(tool);
   std::vector<Pose> poses;
   std::vector<std::uint8_t> bits;
   for (const Step& step : steps) {
     poses.push_back(step.answers[tool].pose);
     std::vector<std::uint8_t> states = step.answers[tool].states;
     states.resize(levels_[tool], kUnused);
-    view::append_bits(states, bits);
+    append_bits(states, bits);
   }
   const std::size_t body = page.add_body(names_[tool], model.center_of_mass, model.radius, poses);
-  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  const std::string of = tools_.size() > 1 ? " of " + names_[tool] : "";
   page.add_spheres({.name = "spheres by state" + of,
                     .spheres = {model.spheres.data(), levels_[tool]},
                     .body = body,
@@ -325,14 +311,14 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
 }
 
 // Adds notes on a tool that no camera sees, and on poses at which nothing is touched.
-void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
+void PoseView::say_what_is_odd(Page& page, const std::vector<Step>& steps,
                                const std::vector<Camera>& frame_cameras) const {
   bool has_camera = !frame_cameras.empty(), is_seen = false, touches = false;
   for (const auto& [name, cloud] : clouds_) has_camera = has_camera || cloud.camera();
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    for (std::size_t t = 0; t < models_.size(); ++t) {
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
       const Answer& answer = steps[k].answers[t];
-      const Vec3 center = answer.pose * models_[t]->center_of_mass;
+      const Vec3 center = answer.pose * model_of(t).center_of_mass;
       touches = touches || answer.result.volume > 0;
       is_seen = is_seen || (!frame_cameras.empty() && sees(frame_cameras[k], center));
       for (const auto& [name, cloud] : clouds_)
@@ -342,7 +328,7 @@ void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
   if (has_camera && !is_seen)
     page.add_note(
         "No camera sees the tool's centre at any pose. Poses map the tool to the world (x right, "
-        "y down, z forward from a camera without --camera-pose): is one of them inverted, or in "
+        "y down, z forward from a camera whose pose was not given): is one of them inverted, or in "
         "millimetres?");
   if (!touches) page.add_note("The tool touches nothing at any pose: the volume is 0 everywhere.");
 }
@@ -353,30 +339,27 @@ std::string PoseView::title() const {
   for (std::size_t t = 1; t < names_.size(); ++t) title += ", " + names_[t];
   std::vector<std::string> scene;
   for (const auto& [name, cloud] : clouds_) scene.push_back(name);
-  if (recording_ != nullptr) scene.push_back(recording_name_);
+  if (frames_) scene.push_back(frames_name_);
   for (const std::string& name : solids_.names()) scene.push_back(name);
   return title + " in " + file::listed(scene);
 }
 
-void PoseView::write() const {
+Page PoseView::page() const {
   const std::vector<Step> steps = kept();
-  if (steps.empty()) refuse("--view " + path_ + ": there is no pose to show");
-  view::Page page("vpm-query", title());
+  if (steps.empty()) refuse("there is no pose to show", "the page");
+  Page page(program_, title());
   page.set_origin(clouds_.empty() ? steps.front().answers[0].pose.translation
                                   : HandleAccess::held(clouds_.front().second).origin);
   for (const auto& [name, cloud] : clouds_)
     if (cloud.camera()) page.set_up(image_up(*cloud.camera()));
-  if (recording_ != nullptr) {
-    const Pose camera = recording_->frames[steps.front().frame.value_or(0)].camera.value_or(
-        import_.to_world.value_or(Pose{}));
-    page.set_up(camera.rotation * Vec3{0, -1, 0});
-  }
   add_facts(page);
-  view::Json volumes = view::Json::array();
+  Json volumes = Json::array();
   const bool is_joined = are_path(steps);
-  for (std::size_t t = 0; t < models_.size(); ++t)
+  for (std::size_t t = 0; t < tools_.size(); ++t)
     volumes.push_back(add_tool(page, steps, t, is_joined));
-  say_what_is_odd(page, steps, add_scene(page, steps));
+  const std::vector<Camera> frame_cameras = add_scene(page, steps);
+  if (!frame_cameras.empty()) page.set_up(image_up(frame_cameras.front()));
+  say_what_is_odd(page, steps, frame_cameras);
 
   std::vector<std::uint32_t> numbers;
   std::size_t deepest = 0;
@@ -387,7 +370,7 @@ void PoseView::write() const {
   page.steps() = {
       {"name", "pose"},    {"count", steps.size()},
       {"start", deepest},  {"moves", true},
-      {"last", seen_ - 1}, {"numbers", view::packed(std::span<const std::uint32_t>(numbers))}};
+      {"last", seen_ - 1}, {"numbers", packed(std::span<const std::uint32_t>(numbers))}};
   if (steps.size() > 1)
     page.add_chart({{"type", "curve"},
                     {"title", is_joined ? "Volume along the path" : "Volume at each pose"},
@@ -396,11 +379,11 @@ void PoseView::write() const {
                     {"every", every_},
                     {"columns", volumes},
                     {"names", names_}});
-  const bool has_images = recording_ != nullptr || !clouds_.empty();
+  const bool has_images = frames_ || !clouds_.empty();
   page.set_views(has_images
                      ? std::vector<std::string>{"overview", "camera", "side", "contact", "all"}
                      : std::vector<std::string>{"overview", "side", "contact", "all"});
-  page.write(path_);
+  return page;
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm::view

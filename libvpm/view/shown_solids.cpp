@@ -1,12 +1,13 @@
-#include "tools/query/shown_solids.h"
+#include "libvpm/view/shown_solids.h"
 
 #include <algorithm>
 #include <array>
 
 #include "libvpm/api/handle_access.h"
+#include "libvpm/core/error.h"
 #include "libvpm/solid/placed_solid.h"
 
-namespace vpm::tools {
+namespace vpm::view {
 namespace {
 
 constexpr std::array<const char*, 4> kSolidColors{"#7a8fb0", "#8fa37a", "#a3897a", "#9a8aa8"};
@@ -22,7 +23,7 @@ Solid mesh_of(const SolidSurface& surface) {
 }  // namespace
 
 void ShownSolids::add(const std::string& name, const Body& body) {
-  solids_.push_back({view::shown_name(name), body});
+  solids_.push_back({shown_name(name), body});
 }
 
 std::vector<std::string> ShownSolids::names() const {
@@ -31,7 +32,13 @@ std::vector<std::string> ShownSolids::names() const {
   return names;
 }
 
-void ShownSolids::add_to(view::Page& page, const std::vector<std::vector<Pose>>& poses) const {
+void ShownSolids::add_to(Page& page, const std::vector<std::vector<Pose>>& poses) const {
+  for (const auto& step : poses) {
+    if (!step.empty() && step.size() != solids_.size())
+      throw Error(ErrorKind::invalid_argument, std::to_string(solids_.size()) +
+                                                   " solids are shown, but a pose moves " +
+                                                   std::to_string(step.size()));
+  }
   const bool moves = std::ranges::any_of(poses, [](const auto& step) { return !step.empty(); });
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     const auto& [name, body] = solids_[k];
@@ -50,4 +57,4 @@ void ShownSolids::add_to(view::Page& page, const std::vector<std::vector<Pose>>&
   }
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm::view
