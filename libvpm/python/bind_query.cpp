@@ -378,7 +378,7 @@ const char* text_of(LevelReason reason) {
   return "none";
 }
 
-void bind_level_query(py::module_& module) {
+void bind_level_query(py::module_& module, const py::object& collides_kind) {
   using LockedQuery = ToolQuery<LevelQuery>;
   py::class_<LockedQuery>(module, "LevelQuery",
                           "A query at the level of detail that a request chooses.")
@@ -411,6 +411,31 @@ void bind_level_query(py::module_& module) {
           },
           py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
           "Returns the vpm.Result at the level of the moment. solids: as for vpm.Query.run.")
+      .def(
+          "collides",
+          [collides_kind](LockedQuery& self, const Scene& scene, const Numbers& pose,
+                          double unseen_limit, const py::object& solids) {
+            const Pose at = pose_of(pose);
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return collides_kind(static_cast<int>(self.ask([&](LevelQuery& query) {
+              return query.collides(scene, at, unseen_limit, 0, moved);
+            })));
+          },
+          py::arg("scene"), py::arg("pose"), py::arg("unseen_limit") = kUnseenLimit,
+          py::arg("solids") = py::none(),
+          "Returns vpm.Collides at the level of the moment, as vpm.Query.collides(); a deadline "
+          "learns nothing.")
+      .def(
+          "another",
+          [](LockedQuery& self) {
+            return std::make_unique<LockedQuery>(
+                self.tools, self.options, self.ask([](auto& query) { return query.another(); }));
+          },
+          "Returns a query for another thread, at the level of this one.")
+      .def(
+          "parts",
+          [](LockedQuery& self) { return self.ask([](auto& query) { return query.parts(); }); },
+          "Returns what each body gave at the last run, as vpm.Query.parts().")
       .def(
           "contacts",
           [](LockedQuery& self) { return self.ask([](auto& query) { return query.contacts(); }); },
@@ -485,7 +510,7 @@ void bind_query(py::module_& module) {
   const py::object collides_kind = bind_collides(module);
   bind_results(module, collides_kind);
   bind_single_query(module, collides_kind);
-  bind_level_query(module);
+  bind_level_query(module, collides_kind);
   bind_setup_check(module);
 }
 

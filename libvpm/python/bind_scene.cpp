@@ -271,7 +271,7 @@ void bind_remover(py::module_& module) {
                         "returns the number of those that had been measured.\n\nimage: (height, "
                         "width) of float32, m, which become -0. intrinsics: fx, fy, cx, cy, or a "
                         "matrix (3, 3). camera_pose: camera to world.\n") +
-            kPlaces + "Raises the same.")
+            kPlaces + "Raises what remove() raises, and ArgumentError for another kind of array.")
                .c_str())
       .def_property_readonly("found", &SolidRemover::found,
                              "List with the vpm.RemovedSolid of each solid, of the last image.");

@@ -222,6 +222,8 @@ def test_only_what_was_seen_to_be_free_is_no_collision(tool, scene):
     assert list(query.run_batch(scene, poses).collides(1)) == [0, 1, 0]
     with pytest.raises(vpm.ArgumentError):
         query.collides(scene, poses[0], unseen_limit=1.5)
+    at_level = vpm.LevelQuery(tool, scene, poses[0], max_error=0.5).another()
+    assert [at_level.collides(scene, pose) for pose in poses] == expected
     solid = vpm.Scene([vpm.Body(vpm.SolidBody(tool), poses[1])])
     assert not query.collides(solid, poses[0]) and query.collides(solid, poses[0], solids=poses[:1])
 
@@ -407,7 +409,8 @@ def test_each_job_has_poses_of_its_solids(tool, cloud):
     with pytest.raises(vpm.ArgumentError):
         vpm.Body(vpm.SolidBody(tool, with_force=False))
     levels = vpm.LevelQuery(tool, scene, poses[0], max_error=0.5)
-    assert levels.run(scene, poses[0], solids[0]).closure is not None
+    answer = levels.run(scene, poses[0], solids[0])
+    assert answer.closure is not None and sum(part.volume for part in levels.parts()) == answer.volume
 
 
 def test_a_coupling_holds_the_tool(tool):

@@ -49,10 +49,6 @@ UNTRIED = [
     ("tells which tool reads a format; a tool that does not says what it wants instead", [
         "give it to vpm-pack", "give it to vpm-normals",
     ]),
-    ("stands in a page of --view: tests/view", [
-        "No camera sees the tool's centre at any pose. Poses map the tool to the world (x right, y down, z forward from a camera "
-        "without --camera-pose): is one of them inverted, or in millimetres?",
-    ]),
     ("for programs that call the library", [
         "make it with `with_force`", "give one for each, or none",
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
