@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libvpm/core/host_device.h"
 #include "libvpm/core/vec3.h"
 
 namespace vpm {
@@ -35,7 +36,7 @@ class TriangleAngle {
 
 // Returns the solid angle of a small piece of surface at `place`, whose normal times its area is
 // `area`; `squared` is the squared distance to take.
-inline double dipole_angle(Vec3 area, Vec3 place, double squared) {
+VPM_HD inline double dipole_angle(Vec3 area, Vec3 place, double squared) {
   return dot(area, place) / (squared * std::sqrt(squared));
 }
 

@@ -8,6 +8,7 @@
 
 #include "libvpm/core/vec3.h"
 #include "libvpm/scene/body.h"
+#include "libvpm/scene/points/disk_winding.h"
 #include "libvpm/scene/points/point_tree.h"
 
 namespace vpm {
@@ -61,6 +62,7 @@ struct DiskSurface {
   const SecondPlane* seconds = nullptr;
   PointNumbers radii{};
   NormalCones cones{};
+  DiskWinding winding{};
 
   // Samples the nearest disk, which stands for the surface. Only in an empty cloud nothing is
   // known.
@@ -142,6 +144,15 @@ struct DiskSurface {
   // body. Returns false if there is none: beyond the last point of a cloud there is no wall.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const;
+
+  // Return whether the disks enclose any place, and this one: more of all directions than not lead
+  // to the back of a disk.
+  VPM_HD bool may_enclose() const {
+    return winding.may_enclose;
+  }
+  VPM_HD bool encloses(Vec3 x) const {
+    return winding.at(x) > 0.5;
+  }
 
   // Holds the class of a ball. Disks bound no gap.
   struct BallClass {

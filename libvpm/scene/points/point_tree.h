@@ -121,6 +121,8 @@ struct TreeEntry {
 struct PointTree {
   static constexpr std::uint32_t kLeafSize = 8;
   static constexpr std::uint32_t kMostLeaves = std::uint32_t{1} << 22;
+  // Bits of numbers of leaves that whole steps reach from the root.
+  static constexpr std::uint32_t kEvenLevels = 0x55555555U;
 
   const Vec3f* points = nullptr;
   const BoxQuad* boxes = nullptr;  // node k is box k % 4 of quad k / 4
@@ -311,7 +313,7 @@ struct PointTree {
   };
 
   VPM_HD bool begins_at_root() const {
-    return (leaves & 0x55555555U) != 0;
+    return (leaves & kEvenLevels) != 0;
   }
 
   template <class Distances, class Takes>

@@ -6,8 +6,9 @@ namespace vpm {
 
 PreparedPoints::PreparedPoints(const Cloud& cloud, Denoising points) {
   check_for_queries(cloud);
-  std::vector<float> radii = order_in_space(cloud);
-  boxes_ = boxes_of(positions());
+  std::vector<std::uint32_t> order = order_in_space(cloud);
+  std::vector<float> radii = take(cloud, order);
+  if (leaves_out_inner(cloud, order)) radii = take(cloud, order);
   const DiskSurface measured{point_tree(), normals().data()};
   if (points == Denoising::on) {
     disks_ = denoised(measured, std::move(radii));
@@ -19,7 +20,18 @@ PreparedPoints::PreparedPoints(const Cloud& cloud, Denoising points) {
   cones_ = cones_of(surface());
 }
 
-std::vector<float> PreparedPoints::order_in_space(const Cloud& cloud) {
+// Takes the points of inner faces from `order`; returns false if there are none.
+bool PreparedPoints::leaves_out_inner(const Cloud& cloud, std::vector<std::uint32_t>& order) {
+  const std::vector<std::uint32_t>& inner = dipoles_.inner();
+  if (inner.empty() || inner.size() == order.size()) return false;
+  inner_ = inner.size();
+  for (const std::uint32_t i : inner) order[i] = kNoPoint;
+  std::erase(order, kNoPoint);
+  order_by_leaves(cloud.positions, order);
+  return true;
+}
+
+std::vector<std::uint32_t> PreparedPoints::order_in_space(const Cloud& cloud) {
   struct Placed {  // side by side, for the cache
     Vec3f at;
     std::uint32_t index;
@@ -40,10 +52,17 @@ std::vector<float> PreparedPoints::order_in_space(const Cloud& cloud) {
       order.push_back(p.index);
   }
   order_by_leaves(cloud.positions, order);
+  return order;
+}
+
+std::vector<float> PreparedPoints::take(const Cloud& cloud,
+                                        const std::vector<std::uint32_t>& order) {
   points_ = OrderedPoints(cloud, order);
   std::vector<float> radii;
   radii.reserve(order.size());
   for (const std::uint32_t i : order) radii.push_back(cloud.radii[i]);
+  boxes_ = boxes_of(positions());
+  dipoles_ = DiskDipoles(point_tree(), normals(), radii);
   return radii;
 }
 
@@ -62,7 +81,8 @@ DiskSurface PreparedPoints::surface() const {
           disks_.second_of.data(),
           disks_.seconds.data(),
           {disks_.radii.data(), largest_radii_.data()},
-          {cones_.data()}};
+          {cones_.data()},
+          dipoles_.winding()};
 }
 
 }  // namespace vpm

@@ -23,6 +23,9 @@ class PreparedPoints {
   // Returns the surface of the points' disks, about origin().
   DiskSurface surface() const;
   const DenoisedDisks& disks() const { return disks_; }  // in the order of positions()
+  const DiskDipoles& dipoles() const { return dipoles_; }
+  // Returns how many points were left out, since the others enclose them: they are of inner faces.
+  std::size_t inner() const { return inner_; }
 
   // Return the points about origin(), and their normals, world axes, in the order of the leaves of
   // their tree.
@@ -44,7 +47,11 @@ class PreparedPoints {
   std::size_t most_ranges() const { return leaves_for(positions().size()); }
 
  private:
-  std::vector<float> order_in_space(const Cloud& cloud);  // returns the sampling radii
+  // Return indices of the cloud's points, each place and normal once, in the order of positions();
+  // and, having taken the points in such an order, their sampling radii.
+  static std::vector<std::uint32_t> order_in_space(const Cloud& cloud);
+  bool leaves_out_inner(const Cloud& cloud, std::vector<std::uint32_t>& order);
+  std::vector<float> take(const Cloud& cloud, const std::vector<std::uint32_t>& order);
 
   std::uint64_t serial_ = next_serial();
   OrderedPoints points_;
@@ -52,6 +59,8 @@ class PreparedPoints {
   std::vector<float> largest_radii_;  // largest radius of a disk in each tree node
   std::vector<BoxQuad> foot_boxes_;   // bounds of the disks' feet, unless those are the positions
   DenoisedDisks disks_;
+  DiskDipoles dipoles_;
+  std::size_t inner_ = 0;
   std::vector<ConeQuad> cones_;  // cones of the disks' normals
 };
 
