@@ -151,6 +151,14 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample&
              : ClusterClass::uniform;
 }
 
+// Returns the place for which it is asked whether the body encloses a cell that is behind the
+// surface and that no flood reaches: the middle of its cluster, for all cells at once, if no
+// surface passes through the cluster's ball, otherwise the cell's own centre.
+template <MeasuredBody Surface>
+VPM_HD bool is_enclosed_as_one(const Surface& surface, Vec3 cluster_center, double cluster_radius) {
+  return surface.classify_ball(cluster_center, cluster_radius).side == Side::no_surface;
+}
+
 // True if the surface may pass through an ambiguous cluster as one plane, so that the sample at its
 // middle is needed.
 template <MeasuredBody Surface>

@@ -23,13 +23,14 @@ enum class CellClass : std::uint8_t {
 
 // Says if the flood has reached a cell, and before that, if it may pass.
 enum class FloodState : std::uint8_t {
-  closed,   // never passed; free and cut cells too
-  reached,  // inside, or hidden
-  unknown,  // decided when the flood comes
-  middle,   // unknown: the surface sample at the middle of its cluster decides
-  open,     // passable, its squared gap is known
-  planar,   // passable, its gap is that to the plane of its cluster
-  near,     // passable, no place of its cluster is further behind the surface than the tool radius
+  closed,    // never passed; free and cut cells too
+  reached,   // inside, or hidden
+  enclosed,  // not reached, but inside of what the body encloses
+  unknown,   // decided when the flood comes
+  middle,    // unknown: the surface sample at the middle of its cluster decides
+  open,      // passable, its squared gap is known
+  planar,    // passable, its gap is that to the plane of its cluster
+  near,      // passable, no place of its cluster is further behind the surface than the tool radius
 };
 
 // Returns the class of a cell on this side of the surface that needs no measuring: not of one that
@@ -48,9 +49,10 @@ inline constexpr std::uint32_t partial = 2;  // pieces are behind it, as far as 
 inline constexpr std::uint32_t whole = 4;    // behind the surface
 // Behind a surface that may be another one: the plane of the nearest cut cell decides.
 inline constexpr std::uint32_t hidden = 8;
-inline constexpr std::uint32_t summed = 16;   // the sum of a cut cell is noted
-inline constexpr std::uint32_t reached = 32;  // the flood of a block alone has come
-inline constexpr std::uint32_t counted = 64;  // in the result: cut as boundary, else inside
+inline constexpr std::uint32_t summed = 16;     // the sum of a cut cell is noted
+inline constexpr std::uint32_t reached = 32;    // the flood of a block alone has come
+inline constexpr std::uint32_t counted = 64;    // in the result: cut as boundary, else inside
+inline constexpr std::uint32_t enclosed = 128;  // the body encloses it
 }  // namespace cell_bit
 
 // True if a cell with these bits is inside if the flood reaches it.

@@ -2,11 +2,11 @@
 // it learns of the surface. DepthSurface (a camera's image, by projection) and DiskSurface (points
 // without a camera, by the nearest disk) answer; README.md has the reasons.
 //
-// MeasuredBody is the concept; SeesFreeSpace, TellsSight, KnowsDepths, BoundsGap and HasOtherWalls
-// are what some bodies know besides; SharesPixels, what is faster so. The functions below ask for
-// these and answer for bodies that do not have them; such an answer costs work or leaves a
-// refinement out, and is never wrong. All members are const and may be called by many threads at
-// once. Places are in the body's own frame, m.
+// MeasuredBody is the concept; SeesFreeSpace, TellsSight, KnowsDepths, TellsEnclosed, BoundsGap and
+// HasOtherWalls are what some bodies know besides; SharesPixels, what is faster so. The functions
+// below ask for these and answer for bodies that do not have them; such an answer costs work or
+// leaves a refinement out, and is never wrong. All members are const and may be called by many
+// threads at once. Places are in the body's own frame, m.
 #pragma once
 
 #include <concepts>
@@ -194,6 +194,14 @@ concept KnowsDepths = MeasuredBody<B> && requires(const B& body, Vec3 x) {
   { body.is_seen_behind_from_sides(x) } -> std::same_as<bool>;
 };
 
+// True for a body that knows of places far from its surface whether it encloses them. If
+// may_enclose() is false it encloses none.
+template <class B>
+concept TellsEnclosed = MeasuredBody<B> && requires(const B& body, Vec3 x) {
+  { body.may_enclose() } -> std::same_as<bool>;
+  { body.encloses(x) } -> std::same_as<bool>;
+};
+
 // True for a body whose side_of() asks pixels of an ambiguous ball, which lanes of a device share:
 // may_be_seen_past() rules most balls out, and is_seen_past() tests the rows first, first + step,
 // ... of pixels_of() a ball against a depth, which is that of the farthest place in the ball.
@@ -292,6 +300,21 @@ template <MeasuredBody B>
 VPM_HD bool is_seen_behind_from_sides(const B& body, Vec3 x) {
   if constexpr (KnowsDepths<B>)
     return body.is_seen_behind_from_sides(x);
+  else
+    return false;
+}
+// Return whether a body encloses any place, and one that lies behind its surface.
+template <MeasuredBody B>
+VPM_HD bool may_enclose(const B& body) {
+  if constexpr (TellsEnclosed<B>)
+    return body.may_enclose();
+  else
+    return false;
+}
+template <MeasuredBody B>
+VPM_HD bool encloses(const B& body, Vec3 x) {
+  if constexpr (TellsEnclosed<B>)
+    return body.encloses(x);
   else
     return false;
 }

@@ -18,7 +18,7 @@
 namespace vpm {
 
 // One cause explains a setup that is wrong, and the first of these that holds is said: sizes that
-// cannot be, since they move everything; tools inside of what points enclose, and tools where the
+// cannot be, since they move everything; tools behind points of one side, and tools where the
 // camera measured nothing, which both are at the scene; poses that miss it.
 class CloudChecks {
  public:

@@ -30,20 +30,23 @@ double PointWinding::at(Vec3 place) const {
 }
 
 void EnclosedCheck::see(const Pose& pose, std::size_t k, const Result& result) {
-  if (2 * result.volume < tools_[k]->volume) doubtful_.add({pose, k});
+  constexpr double kLittle = 0.1;  // part of the tool's volume
+  if (result.volume < kLittle * tools_[k]->volume) doubtful_.add({pose, k});
 }
 
 std::optional<Remark> EnclosedCheck::remark() const {
-  constexpr double kInside = 0.75;  // between a wide wall's 1/2 and a closed surface's 1
+  // A place that more directions lead behind the points from than before them is inside for a
+  // query. Of one with half as many nobody can tell.
+  constexpr double kUnknown = 0.25;
   const auto found = std::ranges::count_if(doubtful_.kept(), [&](const ToolPose& at) {
-    return winding_.at(at.pose * tools_[at.tool]->spheres.front().center) > kInside;
+    return winding_.at(at.pose * tools_[at.tool]->spheres.front().center) > kUnknown;
   });
   if (found == 0) return std::nullopt;
   const bool are_all = doubtful_.stride() == 1;
   return Remark{true, "at " + std::to_string(found) + (are_all ? "" : " or more") +
-                          " of the poses the tool is inside of what the points enclose, but no "
-                          "volume counts there: points without a camera tell only of what is near "
-                          "them"};
+                          " of the poses the tool is behind points that show one side only: "
+                          "whether it is inside is not known, and nothing counts; points from all "
+                          "sides would tell, or depth images with their cameras"};
 }
 
 }  // namespace vpm

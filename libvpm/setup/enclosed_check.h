@@ -1,4 +1,4 @@
-// Finds poses at which a tool is wholly inside of what points without a camera enclose.
+// Finds poses at which points without a camera do not tell whether a tool is inside.
 #pragma once
 
 #include <vpm/query_types.h>
@@ -43,8 +43,8 @@ class EnclosedCheck {
 
   // Notes the answer at a pose of the k-th tool.
   void see(const Pose& pose, std::size_t k, const Result& result);
-  // Returns a warning if at some poses a tool is inside, though half of it or more did not count:
-  // points without a camera tell only of what is near them.
+  // Returns a warning if at some poses a tool is behind points, but hardly any of it counted: the
+  // scan is open there, so that nobody knows whether it is inside.
   std::optional<Remark> remark() const;
 
  private:
@@ -55,7 +55,7 @@ class EnclosedCheck {
 
   std::span<const ToolModel* const> tools_;
   PointWinding winding_;
-  EvenSample<ToolPose> doubtful_;  // poses at which half of the tool or more did not count
+  EvenSample<ToolPose> doubtful_;  // poses at which hardly anything counted
 };
 
 }  // namespace vpm

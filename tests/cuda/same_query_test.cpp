@@ -17,6 +17,7 @@
 #include "tests/query/replay.h"
 #include "tests/query/ring_of_cameras.h"
 #include "tests/refusal.h"
+#include "tests/scene/scans.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -295,6 +296,25 @@ TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
     expect_same_batch(on_device, cloud, poses, expected);
   }
   EXPECT_GE(hidden, static_cast<int>(testing::expected_of(31)));
+}
+
+// Tools wholly inside of what points enclose, further behind the surface than their radius or not,
+// and such that the surface cuts.
+TEST(EnclosedToolOnDevice, GivesTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  Cloud shell;
+  add_box({0, 0, 1}, {0.5, 0.5, 0.5}, 1, 0.02, shell);
+  add_box({0, 0, 1.3}, {0.1, 0.1, 0.1}, -1, 0.02, shell);
+  const AnyBody cloud(shell);
+  for (const ToolModel& tool : {testing::lattice_cube(0.3, 6, 3), testing::lattice_cube(0.1, 4, 6),
+                                testing::lattice_cube(0.25, 20, 1)}) {
+    std::vector<Pose> poses = poses_of(testing::effort(48));
+    poses.push_back({{}, {0, 0, 1}});
+    int whole = 0;
+    for (const Result& result : same_answers(tool, cloud, poses))
+      whole += result.boundary == 0 && result.volume > 0.99 * tool.volume;
+    EXPECT_GE(whole, 1);
+  }
 }
 
 // Alternates small and large tools, more than one launch takes, and one without a pose.

@@ -55,7 +55,7 @@ CLOUDS = [
     ("P17", "a.pcd", 0, "give --flip", None),
     ("P17", "a.pcd --flip", 0, "", [PASSES, 0]),
     ("P24", "a.pcd", 0, "fits no pinhole camera", [PASSES]),
-    ("V01", "a.ply", 0, "", [0, 0, 0]),  # far behind the surface of points without a camera; right would be 0.008 for the first two
+    ("V01", "a.ply", 0, "", [0.008, 0.008, 0]),
     ("V03b", "a.ply", 0, "", [0, 0]),
 ]
 # Row: folder; text that vpm-query's messages hold; volumes.

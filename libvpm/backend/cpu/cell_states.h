@@ -107,10 +107,13 @@ struct CellStates {
     set(row, class_on_side(side), side == Side::free ? FloodState::closed : FloodState::unknown);
   }
 
+  // True if a row that is not cut was found to be inside, as far as it is behind the surface.
+  bool is_taken(std::uint32_t row) const {
+    return flood_states[row] == FloodState::reached || flood_states[row] == FloodState::enclosed;
+  }
   // True if a row counts. Valid once it is decided what is taken.
   bool counts(std::uint32_t row) const {
-    return cells[row] == CellClass::cut ||
-           (flood_states[row] == FloodState::reached && cells[row] != CellClass::free);
+    return cells[row] == CellClass::cut || (is_taken(row) && cells[row] != CellClass::free);
   }
 
   // Holds one entry per row of the SpatialLevel in each vector, unless said otherwise.

@@ -89,7 +89,8 @@ class CameraVisibility {
 };
 
 // Decides where points were seen from unknown places: cells behind the surface that the graph
-// reaches from cut cells are inside. The order of traversal does not matter.
+// reaches from cut cells are inside, and others that the body encloses. The order of traversal does
+// not matter.
 template <class Surface>
 class InsideFlood {
  public:
@@ -105,6 +106,12 @@ class InsideFlood {
       region.loop(work_.states.part_count, 1,
                   [&](std::size_t k, std::size_t) { take_up(work_.states.parts[k]); });
     }
+    if (!may_enclose(work_.surface)) return;
+    constexpr std::size_t kGrain = 8;
+    region.loop(work_.level.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t root = begin; root < end; ++root)
+        take_enclosed(static_cast<std::uint32_t>(root));
+    });
   }
 
   // Keeps cells inside that were inside or cut at the last pose, as long as they are behind the
@@ -131,9 +138,11 @@ class InsideFlood {
     }
   }
 
-  // Returns the support for a cell that the flood has taken.
+  // Returns the support for a cell that was taken. One that the body encloses needs no plane.
   auto support(std::uint32_t row, std::uint32_t& last_cut) const {
-    return cut_.support(row, work_.tool_radius.length, true, last_cut);
+    return [is_enclosed = work_.states.flood_states[row] == FloodState::enclosed,
+            by_plane = cut_.support(row, work_.tool_radius.length, true, last_cut)](
+               Vec3 x, Vec3 foot) mutable { return is_enclosed || by_plane(x, foot); };
   }
   // Remembers all cells that count (see CameraVisibility).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
@@ -252,6 +261,35 @@ class InsideFlood {
     return goes_on;
   }
 
+  // True if it is open whether a row that no flood has reached is inside.
+  bool may_be_enclosed(std::uint32_t row) const {
+    const CellClass cell = work_.states.cells[row];
+    if (cell == CellClass::free || cell == CellClass::cut || work_.states.is_taken(row))
+      return false;
+    return cell != CellClass::no_surface || work_.states.flood_states[row] != FloodState::closed;
+  }
+  // Takes the cells of a cluster that no flood has reached and that the body encloses.
+  void take_enclosed(std::uint32_t root) {
+    const CellCluster& cluster = work_.level.cluster(root);
+    std::uint32_t first = cluster.begin;
+    while (first < cluster.end && !may_be_enclosed(first)) ++first;
+    if (first == cluster.end) return;
+    const Vec3 middle = work_.to_surface * cluster.center;
+    const bool as_one = is_enclosed_as_one(work_.surface, middle, cluster.radius);
+    if (as_one && !encloses(work_.surface, middle)) return;
+    if (work_.states.flood_states[first] == FloodState::middle) decide_cluster(root);
+    for (std::uint32_t i = first; i < cluster.end; ++i) {
+      if (!may_be_enclosed(i)) continue;
+      const Vec3 at = work_.center(i);
+      if (!as_one && !encloses(work_.surface, at)) continue;
+      if (work_.states.cells[i] == CellClass::no_surface) {
+        if (!is_behind_surface(work_.surface.sample(at))) continue;
+        work_.states.cells[i] = CellClass::whole;
+      }
+      work_.states.flood_states[i] = FloodState::enclosed;
+    }
+  }
+
   void take(FloodPart& part, std::uint32_t j) {
     work_.states.flood_states[j] = FloodState::reached;
     part.front.push_back(j);
@@ -318,9 +356,7 @@ class InsideFlood {
 
   template <class Holds>
   bool is_behind(std::uint32_t i, const Holds& holds) const {
-    if (work_.states.cells[i] == CellClass::free ||
-        work_.states.flood_states[i] == FloodState::reached)
-      return false;
+    if (work_.states.cells[i] == CellClass::free || work_.states.is_taken(i)) return false;
     const Vec3 at = work_.center(i);
     const SurfaceSample on_surface = work_.surface.sample(at);
     if (!on_surface.known ||

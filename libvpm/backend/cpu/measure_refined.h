@@ -148,7 +148,7 @@ class RefinedMeasure {
     WholeCells whole(work, inside, sum, unseen);
     for_rows_in(CellClass::cut, cells_.cells, begin, end,
                 [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
-    for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
+    const auto add_taken = [&](std::uint32_t i) {
       if (cells_.cells[i] != CellClass::uniform && cells_.cells[i] != CellClass::partial)
         return whole.add(i);
       const ToolSum part = sum_of(work, inside, i, last_cut, unseen);
@@ -158,7 +158,10 @@ class RefinedMeasure {
         ++count;
       else
         cells_.cells[i] = CellClass::free;  // hidden, not inside
-    });
+    };
+    for_rows_in(FloodState::reached, cells_.flood_states, begin, end, add_taken);
+    if (may_enclose(work.surface))
+      for_rows_in(FloodState::enclosed, cells_.flood_states, begin, end, add_taken);
     return count + whole.finish();
   }
 

@@ -303,18 +303,22 @@ class CutCells {
     return best;
   }
 
-  // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
-  // add(piece).
-  template <class MayCount, class Add>
+  // Adds the far pieces that count. Asks may_count(cell) for uncut cells, and whether the body
+  // encloses them, for which no plane is needed; one thread calls add(piece).
+  template <class MayCount, class IsEnclosed, class Add>
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
-                                       const Add& add) const {
+                                       const IsEnclosed& is_enclosed, const Add& add) const {
     const Subwarp warp(32);
-    if (read(counters_.cut) == 0) return;
+    const bool any_cut = read(counters_.cut) > 0;
     for (unsigned k = team_.thread() / 32; k < count; k += team_.threads() / 32) {
       const FarPiece& far = space_.far[k];
       const std::uint32_t i = far.cell, word = notes_.words[i];
       const bool cut = (word & cell_bit::cut) != 0;
-      if (!cut && !may_count(i)) continue;
+      if (!cut && is_enclosed(i)) {
+        if (warp.leads()) add(far);
+        continue;
+      }
+      if (!any_cut || (!cut && !may_count(i))) continue;
       const std::uint32_t by = cut ? i : nearest_to(warp, i);
       if (by < level_.count && warp.leads() &&
           at(by).supports(far.at, far.foot, level_.tool_radius.length))

@@ -147,11 +147,16 @@ void DeviceLevel::add_edges(const SphereGraph& graph) {
   view_.edge_count = begins.back();
 }
 
-// Adds the block tasks in groups, and the masses of blocks and cells.
+// Adds the block tasks in groups, the masses of blocks and cells, and the balls of clusters.
 void DeviceLevel::add_tasks(const ToolModel& tool, const Level& level) {
   const CellClusters clusters = cluster_cells(tool, level);
   const LevelTasks level_tasks(tool, level, clusters);
   view_.cell_masses = memory_.copy(clusters.masses);
+  std::vector<TaskBall> balls(level.sphere_count);
+  for (const CellCluster& cluster : clusters.clusters)
+    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
+      balls[clusters.cells[k]] = {cluster.center, cluster.radius};
+  view_.cluster_balls = memory_.copy(balls);
   view_.block_masses = memory_.copy(level_tasks.block_masses());
   const GroupedTasks<BlockTask> grouped = level_tasks.grouped();
   view_.block_tasks = memory_.copy(grouped.tasks);

@@ -91,12 +91,12 @@ struct NoShared {};
 // Finishes a query where a camera has seen the surface. The first step has added what is behind it
 // by no more than the tool radius; pieces further behind count if the plane of a cut cell supports
 // them.
-template <class Team>
+template <class Surface, class Team>
 class CameraVisibility {
  public:
   using Shared = NoShared;  // memory of a block
 
-  __device__ CameraVisibility(const LevelView& level, const Pose& to_surface,
+  __device__ CameraVisibility(const LevelView& level, const Surface&, const Pose& to_surface,
                               const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
                               Team& team, Shared&)
       : notes_(space.notes[turn % 2]),
@@ -114,7 +114,7 @@ class CameraVisibility {
       cut_.list();
       team_.sync();
       cut_.add_far(
-          far, [](std::uint32_t) { return true; },
+          far, [](std::uint32_t) { return true; }, [](std::uint32_t) { return false; },
           [&](const FarPiece& far_piece) {
             result.sum.add(far_piece.sum);
             add_term(counters_.unseen.unseen.value, -far_piece.weight.value);
@@ -158,16 +158,19 @@ union FloodBlock {
 //
 // In a block's own memory the flood goes from cell to cell until nothing changes. Otherwise cells
 // that the flood may pass are joined where the graph has an edge, and with the entry where a cut
-// cell lets the flood in. What is joined with the entry is inside. The team meets between joining
-// and adding up; where another surface may hide something, which is rare, more often.
-template <class Team>
+// cell lets the flood in. What is joined with the entry is inside, and other cells that the body
+// encloses. The team meets between joining and adding up; where another surface may hide something,
+// which is rare, more often.
+template <class Surface, class Team>
 class Flood {
  public:
   using Shared = FloodBlock;
 
-  __device__ Flood(const LevelView& level, const Pose& to_surface, const RefinedSpace& space,
-                   unsigned turn, RefinedCounters& counters, Team& team, FloodBlock& block)
+  __device__ Flood(const LevelView& level, const Surface& surface, const Pose& to_surface,
+                   const RefinedSpace& space, unsigned turn, RefinedCounters& counters, Team& team,
+                   FloodBlock& block)
       : level_(level),
+        surface_(surface),
         to_surface_(to_surface),
         space_(space),
         notes_(space.notes[turn % 2]),
@@ -200,9 +203,14 @@ class Flood {
     else
       join_cells();
     team_.sync();
+    if (may_enclose(surface_)) {
+      take_enclosed();
+      team_.sync();
+    }
     if (found.far > 0) {
       cut_.add_far(
           found.far, [&](std::uint32_t i) { return is_inside(i, words_[i]); },
+          [&](std::uint32_t i) { return (words_[i] & cell_bit::enclosed) != 0; },
           [&](const FarPiece& piece) { add_atomically(piece.sum, notes_.sums[piece.cell]); });
       team_.sync();
     }
@@ -221,6 +229,7 @@ class Flood {
   }
   __device__ Vec3 center(std::uint32_t i) const { return to_surface_ * level_.centers[i]; }
   __device__ bool is_inside(std::uint32_t i, std::uint32_t word) const {
+    if ((word & cell_bit::enclosed) != 0) return true;
     return in_shared_ ? (word & cell_bit::reached) != 0
                       : is_passable(word) && flood_.root(i + 1) == 0;
   }
@@ -368,6 +377,18 @@ class Flood {
     }
   }
 
+  // Marks the cells that no flood has reached and that the body encloses.
+  __device__ __noinline__ void take_enclosed() {
+    for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
+      const std::uint32_t word = words_[i];
+      if (!may_be_inside(word) || is_inside(i, word)) continue;
+      const TaskBall& cluster = level_.cluster_balls[i];
+      const Vec3 middle = to_surface_ * cluster.center;
+      const bool as_one = is_enclosed_as_one(surface_, middle, cluster.radius);
+      if (encloses(surface_, as_one ? middle : center(i))) words_[i] = word | cell_bit::enclosed;
+    }
+  }
+
   // Returns this thread's part of the sum over all cells that count.
   __device__ ThreadResult add_up_cells() {
     ThreadResult result;
@@ -378,7 +399,8 @@ class Flood {
       for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
         add(i, words_[i]);
     } else {
-      noted_.for_each(add);
+      // Reads the words anew, since the list has those from before the flood.
+      noted_.for_each([&](std::uint32_t i, std::uint32_t) { add(i, words_[i]); });
     }
     return result;
   }
@@ -395,6 +417,7 @@ class Flood {
   }
 
   const LevelView& level_;
+  const Surface& surface_;
   const Pose& to_surface_;
   const RefinedSpace& space_;
   const CellNotes& notes_;

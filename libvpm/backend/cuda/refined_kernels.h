@@ -64,7 +64,8 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
 
 // Decides which cells behind a surface are inside.
 template <class Surface, class Team>
-using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
+using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Surface, Team>,
+                                  Flood<Surface, Team>>;
 
 // True for a surface that small levels are measured before by a schedule of its own.
 template <class Surface>
@@ -142,8 +143,8 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
   const std::uint64_t met = now();
   if (threadIdx.x == 0) total = RawResult{};
   BlockTeam team;
-  add_block(Flood<BlockTeam>(launch.level, to_surface, launch.space, sequence, *launch.counters,
-                             team, shared.inside)
+  add_block(Flood<Surface, BlockTeam>(launch.level, launch.surface, to_surface, launch.space,
+                                      sequence, *launch.counters, team, shared.inside)
                 .run(),
             total);
   __syncthreads();
@@ -184,8 +185,8 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
     if constexpr (kHasImageSchedule<Surface>)
       if (far > 0) note_planes(launch, to_surface, sequence, shared);
     GridTeam meeting = team;  // a copy, since a function's argument lies in memory
-    Rest rest(launch.level, to_surface, launch.space, sequence, *launch.counters, meeting,
-              shared.inside);
+    Rest rest(launch.level, launch.surface, to_surface, launch.space, sequence, *launch.counters,
+              meeting, shared.inside);
     add_block(rest.run(), totals->result);
   }
   if (!is_last_of(totals->done, gridDim.x)) return;
@@ -252,8 +253,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
-    Inside<Surface, BlockTeam> inside(level, to_surface, space, turn, counters, team,
-                                      shared.inside);
+    Inside<Surface, BlockTeam> inside(level, launch.surface, to_surface, space, turn, counters,
+                                      team, shared.inside);
     if (inside.has_more(counters.far)) add_block(inside.run(), total);
     __syncthreads();
     if (threadIdx.x == 0) {

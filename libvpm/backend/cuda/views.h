@@ -90,6 +90,7 @@ struct LevelView {
   WarpTaskGroups of_warps;
   const Edge* edges = nullptr;                // ordered by their larger index
   const std::uint32_t* edge_begin = nullptr;  // edges by larger index; count + 1 entries
+  const TaskBall* cluster_balls = nullptr;    // of each cell's cluster
   ToolRadius tool_radius;
 
   VPM_HD CellView cell(std::uint32_t i) const {

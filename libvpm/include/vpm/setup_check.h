@@ -44,8 +44,8 @@ class VPM_API SetupCheck {
   // first that holds of:
   // - a tool is much larger than all that the scene shows, or smaller than its points can show,
   //   which mistakes of units cause; known before the first pose;
-  // - a tool is inside of what points without a camera enclose, where half of it or more did not
-  //   count, since such points tell only of what is near them;
+  // - a tool is behind points without a camera that show one side of what is there only, so that
+  //   nobody knows whether it is inside, and hardly anything of it counted;
   // - a quarter or more of what a tool has behind the surface lies where the camera measured
   //   nothing, at half of the poses or more;
   // - no pose brought a tool into the camera's view, or near the surface. The remark names what

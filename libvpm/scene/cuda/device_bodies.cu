@@ -67,6 +67,8 @@ DevicePointsBody::DevicePointsBody(const PreparedPoints& points) : surface_(poin
   surface_.normals = memory_.copy(denoised.normals);
   surface_.second_of = memory_.copy(denoised.second_of);
   surface_.seconds = memory_.copy(denoised.seconds);
+  surface_.winding.disks = memory_.copy(points.dipoles().disks());
+  surface_.winding.nodes = memory_.copy(points.dipoles().nodes());
 }
 
 DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {

@@ -145,16 +145,28 @@ void DiskDipoles::find_sides(const PointTree& tree) {
   // wide wall, of which one side was seen, 0.
   constexpr double kInner = 1, kMaybeInner = 0.75, kMayEnclose = 0.25;
   const DiskWinding winding = this->winding();
+  const auto leaf_of = [](std::uint32_t i) { return i / PointTree::kLeafSize; };
   std::vector<char> is_inner(count_);
-  std::vector<double> of_leaf((count_ + PointTree::kLeafSize - 1) / PointTree::kLeafSize);
+  std::vector<double> of_leaf(leaf_of(count_ + PointTree::kLeafSize - 1));
+  for_leaves(count_, [&](std::uint32_t begin, std::uint32_t) {
+    of_leaf[leaf_of(begin)] = winding.at(widen(nodes_[leaves_ + leaf_of(begin)].center));
+  });
+  // Where a face becomes an inner one, at another surface, leaves hold points of both sides.
+  const auto is_near_inner = [&](std::uint32_t begin) {
+    const PointBox box = tree.leaf_of(begin);
+    const Vec3 low = widen(box.low), high = widen(box.high);
+    return !tree.for_leaves_in_ball(
+        0.5 * (low + high), squared_norm(high - low),
+        [&](std::uint32_t other, std::uint32_t) { return of_leaf[leaf_of(other)] <= kMaybeInner; });
+  };
+  const bool has_inner = std::ranges::any_of(of_leaf, [](double n) { return n > kMaybeInner; });
+  may_enclose_ = std::ranges::any_of(of_leaf, [](double n) { return n > kMayEnclose; });
+  if (!has_inner) return;
   for_leaves(count_, [&](std::uint32_t begin, std::uint32_t end) {
-    double& number = of_leaf[begin / PointTree::kLeafSize];
-    number = winding.at(widen(nodes_[tree.leaves + begin / PointTree::kLeafSize].center));
-    if (number <= kMaybeInner) return;
+    if (!is_near_inner(begin)) return;
     for (std::uint32_t i = begin; i < end; ++i)
       is_inner[i] = winding.at(widen(disks_[i].center)) > kInner;
   });
-  for (const double number : of_leaf) may_enclose_ |= number > kMayEnclose;
   for (std::uint32_t i = 0; i < count_; ++i)
     if (is_inner[i] != 0) inner_.push_back(i);
 }

@@ -49,21 +49,18 @@ $ vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null --m
 $ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' > device.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o /dev/null --quiet
 2> vpm-query: warning: at poses 0, 1 and 9 others a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 
-# Points without a camera tell only of what is near them: a tool in the middle of what they enclose counts for nothing, which is said.
+# A tool in what points without a camera enclose counts whole, however deep; behind points of one side nobody knows, which is said.
 $ cat > boxes.py <<< $'import itertools\nn = range(-15, 16)\nfaces = [(p, a, s) for a in range(3) for s in (-1, 1) for p in itertools.product(n, n)]\ndef rows(kept):\n    for (u, v), a, s in faces:\n        if kept(a, s):\n            at, to = [0.02 * u, 0.02 * v], [0, 0]\n            at.insert(a, 0.3 * s)\n            to.insert(a, s)\n            yield " ".join(map(str, at + to))\nfor name, kept in {"closed": lambda a, s: True, "wall": lambda a, s: (a, s) == (2, -1)}.items():\n    lines = list(rows(kept))\n    head = ["ply", "format ascii 1.0", f"element vertex {len(lines)}", *("property float " + p for p in "x y z nx ny nz".split()), "end_header"]\n    open(name + ".ply", "w").write("\\n".join(head + lines) + "\\n")'
 $ python3 boxes.py && for n in closed wall; do vpm-normals $n.ply -o $n.vpmc; done
 $ printf '0 0 0 0 0 0 1\n0.05 0 0.1 0 0 0 1\n0 0 -0.3 0 0 0 1\n0 0 0.7 0 0 0 1\n' > inside.txt
-$ vpm-query --tool cube.vpmg --cloud closed.vpmc --poses inside.txt | grep -o '"volume_fraction":0.[0-9]'
+$ vpm-query --tool cube.vpmg --cloud closed.vpmc --poses inside.txt | grep -o '"inside":[0-9]*'
+"inside":100
+"inside":100
+"inside":46
+"inside":0
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,-0.15,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'
 "volume_fraction":0.0
-"volume_fraction":0.0
-"volume_fraction":0.5
-"volume_fraction":0.0
-2> vpm-query: warning: at 2 of the poses the tool is inside of what the points enclose, but no volume counts there: points without a camera tell only of what is near them
-# It is the only thing that is said, also where other axes would bring the tool to the surface.
-$ for at in '0 0 0' '0.02 0.05 0' '0.07 -0.03 0.02'; do vpm-query --tool cube.vpmg --cloud closed.vpmc --pose "$at 0 0 0 1" -o /dev/null; done
-2> vpm-query: warning: at 1 of the poses the tool is inside of what the points enclose, but no volume counts there: points without a camera tell only of what is near them
-2> vpm-query: warning: at 1 of the poses the tool is inside of what the points enclose, but no volume counts there: points without a camera tell only of what is near them
-2> vpm-query: warning: at 1 of the poses the tool is inside of what the points enclose, but no volume counts there: points without a camera tell only of what is near them
+2> vpm-query: warning: at 1 of the poses the tool is behind points that show one side only: whether it is inside is not known, and nothing counts; points from all sides would tell, or depth images with their cameras
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses inside.txt | grep -o '"volume_fraction":0.[0-9]'
 "volume_fraction":0.0
 "volume_fraction":0.0
