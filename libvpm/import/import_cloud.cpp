@@ -215,9 +215,12 @@ ImportedCloud cloud_of(ImportedScan scan, const std::string& name, const ImportO
       facts_of(imported.cloud, imported.invalid, std::size_t{imported.width} * imported.height);
   if (!scan.looks_coded)  // of several causes one is said
     append(imported.remarks, improbable_depths(imported.facts, options.depth.units_per_metre));
-  if (options.flip && scan.image)
-    imported.remarks.push_back(
-        {true, "`flip` is not used: normals estimated from depth face the camera"});
+  for (const auto& [is_given, option] :
+       {std::pair(options.flip, "flip"), std::pair(options.orient.has_value(), "orient")})
+    if (is_given && scan.image)
+      imported.remarks.push_back({true, "`" + std::string(option) +
+                                            "` is not used: normals estimated from depth face the "
+                                            "camera"});
   return imported;
 }
 

@@ -12,6 +12,7 @@
 #include "libvpm/cloud/camera_axes.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
+#include "libvpm/cloud/orientation.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/import/depth_files.h"
@@ -34,6 +35,9 @@ struct ImportOptions {
   CameraAxes axes = CameraAxes::opencv;
   std::optional<Pose> to_world;  // if unset, a PCD's VIEWPOINT, or identity for this library's axes
   bool flip = false;             // turns the normals of points that have some and no camera
+  // Turns those of them that face away from a place, world coordinates, or that disagree with their
+  // neighbours, after `flip`.
+  std::optional<Orientation> orient;
   NormalOptions normals;
   // Takes known solids out of the depth image that a camera took at `time`, s, and returns the
   // number of pixels. Points without a camera are refused then.

@@ -1,6 +1,8 @@
 // Judges the normals that other programs gave to points.
 #pragma once
 
+#include <string>
+
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/import/point_files.h"
 #include "libvpm/import/remark.h"
@@ -10,9 +12,10 @@ namespace vpm {
 // Returns the median of the radii of the cloud's disks, m.
 double median_radius(const Cloud& cloud);
 
-// Returns a warning if normals are opposite to others beside them on the same surface, and one if
-// they lie off the surfaces that the points form.
-Remarks improbable_normals(const Cloud& cloud);
+// Returns a warning if normals lie off the surfaces that the points form, or else one if they
+// contradict those of the points about them. Throws Error(refused), naming `name`, if so many do
+// that volumes would be wrong.
+Remarks improbable_normals(const Cloud& cloud, const std::string& name);
 
 // True if points with a viewpoint stand in the world's frame, as some programs write them: nearly
 // all normals face the viewpoint as a point among them, and nearly none the origin, where the

@@ -130,7 +130,8 @@ Remarks coarse_coordinates(const Coarseness& numbers, const Cloud& cloud) {
 // Returns the cloud of points in metres. Throws Error(refused), naming `name`, for points without
 // normals.
 ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
-                                const std::string& name) {
+                                const std::string& name,
+                                const std::optional<Orientation>& orientation) {
   refuse_missing_normals(points, name);
   ScatteredScan scan;
   scan.cloud = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
@@ -141,7 +142,10 @@ ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
   if (scan.without_normal > 0)
     scan.remarks.push_back(
         {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
-  append(scan.remarks, improbable_normals(scan.cloud));
+  if (orientation)
+    scan.remarks.push_back({false, std::to_string(orient(*orientation, scan.cloud)) + " of its " +
+                                       std::to_string(scan.cloud.size()) + " normals turned"});
+  append(scan.remarks, improbable_normals(scan.cloud, name));
   return scan;
 }
 
@@ -215,14 +219,15 @@ ImportedScan scan_without_camera(PointSet points, const ToldPose& told, const st
   for (Vec3& p : points.positions) p = p / units_per_metre;
   if (options.flip)
     for (Vec3& n : points.normals) n = -n;
-  ScatteredScan read = scan_of_scattered(points, to_world, name);
+  ScatteredScan read = scan_of_scattered(points, to_world, name, options.orient);
   if (numbers) {
     numbers->farthest /= units_per_metre;
     numbers->step /= units_per_metre;
     append(read.remarks, coarse_coordinates(*numbers, read.cloud));
   }
   // A file with a viewpoint has its sensor at the origin of its frame, which normals must face.
-  if (!told.is_among_points) append(read.remarks, facing_away(points, options.flip));
+  if (!told.is_among_points && !options.orient)
+    append(read.remarks, facing_away(points, options.flip));
   ImportedScan scan;
   scan.width = points.width;
   scan.height = points.height;

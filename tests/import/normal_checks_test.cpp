@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libvpm/cloud/scattered_points.h"
+#include "libvpm/core/error.h"
 #include "tests/import/test_files.h"
 
 namespace vpm {
@@ -48,11 +49,15 @@ PointSet box(Vec3 low, Vec3 high, double spacing) {
   return points;
 }
 
+// Returns what is said of points, or why they are refused.
 std::string said(const PointSet& points) {
+  const Cloud cloud = cloud_of_scattered_points(points.positions, points.normals, Pose{}, "points");
   std::string text;
-  for (const Remark& remark : improbable_normals(
-           cloud_of_scattered_points(points.positions, points.normals, Pose{}, "points")))
-    text += remark.text + "\n";
+  try {
+    for (const Remark& remark : improbable_normals(cloud, "points")) text += remark.text + "\n";
+  } catch (const Error& error) {
+    text = error.what();
+  }
   return text;
 }
 
@@ -75,6 +80,20 @@ TEST(NormalChecks, AFewTurnedNormalsAreSaid) {
   const PointSet corner = turned(wall(), [](auto, const Vec3& p) { return p.x + p.y < -0.2; });
   EXPECT_TRUE(says(said(half), "face opposite ways"));
   EXPECT_TRUE(says(said(corner), "face opposite ways"));
+}
+
+// Of more, volumes would be wrong by far more than noise makes them.
+TEST(NormalChecks, ManyTurnedNormalsAreRefused) {
+  const auto check = [](double share) {
+    std::mt19937 random(1);
+    std::bernoulli_distribution is_turned(share);
+    const PointSet points = turned(wall(), [&](auto, auto) { return is_turned(random); });
+    return improbable_normals(
+        cloud_of_scattered_points(points.positions, points.normals, Pose{}, "points"), "points");
+  };
+  EXPECT_EQ(check(0.01).size(), 1U);
+  EXPECT_THROW(check(0.05), Error);
+  EXPECT_THROW(check(0.5), Error);
 }
 
 TEST(NormalChecks, NormalsOfOtherSurfacesAreSaid) {

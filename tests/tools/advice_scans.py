@@ -56,6 +56,7 @@ SCANS = [
     (f"layer.exr {CAMERA}", r"name it with (--channel), such as (\S+)", f"layer.exr {CAMERA} {{0}} {{1}}", WALL),
     (f"wall.png {CAMERA} --channel Z", "--channel is not used", f"wall.png {CAMERA}", WALL),
     (f"wall.png {CAMERA} --flip", "--flip is not used", f"wall.png {CAMERA}", WALL),
+    (f"wall.png {CAMERA} --orient neighbours", "--orient is not used", f"wall.png {CAMERA}", WALL),
     ("away.pcd", r"give (--flip) to turn them", "away.pcd {0}", POINTS),
     ("gl.pcd", r"give (--axes \w+)", "gl.pcd {0}", WALL),
     ("ros.pcd", r"give (--axes \w+)", "ros.pcd {0}", WALL),

@@ -79,6 +79,11 @@ void declare_values(CLI::App& app, ImportArguments& a) {
       ->option_text("NAME");
   app.add_flag("--flip", a.flip,
                "Turn the normals of points around: they must point into free space");
+  app.add_option("--orient", a.orient,
+                 "Turn those normals of points that face away from the sensor at a place in the "
+                 "world, or so that neighbours agree and solids are inside: x,y,z or neighbours")
+      ->join(',')
+      ->option_text("HOW");
 }
 
 void declare_normals(CLI::App& app, ImportArguments& a) {
@@ -196,6 +201,7 @@ ImportOptions import_options(const Program& program, const ImportArguments& a,
   options.depth = depth_reading(a);
   options.channel = a.channel;
   options.flip = a.flip;
+  if (!a.orient.empty()) options.orient = orientation_from_text(a.orient);
   read_intrinsics(program, a, image, options);
   read_pose(program, a, options);
   return options;

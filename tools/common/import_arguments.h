@@ -13,7 +13,7 @@ namespace vpm::tools {
 struct ImportArguments {
   std::string intrinsics, camera_pose, axes = "opencv";
   std::optional<double> depth_scale;  // units per metre
-  std::string unit, invalid, range, decode, channel;
+  std::string unit, invalid, range, decode, channel, orient;
   bool along_ray = false, flip = false;
   std::string method = "inverse-depth";
   int window = 7;
