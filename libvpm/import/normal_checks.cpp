@@ -135,7 +135,10 @@ std::string places_text(const Cloud& cloud, std::span<const std::uint32_t> point
   constexpr std::size_t kMost = 3;
   std::string text = points.size() > kMost ? "the first at " : "at ";
   for (std::size_t k = 0; k < std::min(points.size(), kMost); ++k) {
-    const Vec3 at = cloud.origin + widen(cloud.positions[points[k]]);
+    const double rounding = 1e-3 * cloud.radii[points[k]];
+    Vec3 at = cloud.origin + widen(cloud.positions[points[k]]);
+    for (double* const c : {&at.x, &at.y, &at.z})
+      if (std::fabs(*c) < rounding) *c = 0;
     char place[96];
     std::snprintf(place, sizeof place, "%s(%.4g, %.4g, %.4g)", k == 0 ? "" : ", ", at.x, at.y,
                   at.z);

@@ -248,6 +248,7 @@ def write_clouds(folder):
         "mirrored.pcd": pcd([(-x, y, z) for x, y, z in points]), "twisted.pcd": pcd([(y, -x, z) for x, y, z in points]),
         "lidar.pcd": pcd(lidar), "lidar_normals.pcd": pcd(lidar, normals=toward),
         "away.pcd": pcd(points, normals=away, **one_row), "points.ply": ply(points, toward), "bare.ply": ply(points),
+        "turned.ply": ply(points, [[-c for c in n] if k % 3 == 0 else n for k, n in enumerate(toward)]),
         "zero.ply": ply(points, none), "far_point.ply": ply([*points, (1e7, 0, 0)], [*toward, (0, 0, -1)]),
         "coarse.ply": binary_ply([(x + 1e5, y, z) for x, y, z in points], toward),
         "digits.ply": ply([(x + 1e5, y, z) for x, y, z in points], toward, "double", 6),
