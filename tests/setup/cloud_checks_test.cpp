@@ -58,7 +58,8 @@ TEST(CloudChecks, SizesComeBeforeHolesAndPoses) {
 }
 
 TEST(CloudChecks, AToolThatIsEnclosedIsAtTheScene) {
-  const std::string enclosed = "at 1 of the poses the tool is behind points that show one side only";
+  const std::string enclosed =
+      "at 1 of the poses the tool is behind points that show one side only";
   // Wherever in it, also where its middle would be at the surface with other axes.
   for (const Vec3 at : {Vec3{0, 0, 0}, Vec3{0.05, 0.02, 0}, Vec3{0, 0.1, 0.05}})
     EXPECT_TRUE(begins_with(said_of(cube_of(0.1), scanned_cube(1, 0.02), {{{}, at}}), enclosed));
