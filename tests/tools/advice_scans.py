@@ -57,7 +57,7 @@ SCANS = [
     (f"wall.png {CAMERA} --channel Z", "--channel is not used", f"wall.png {CAMERA}", WALL),
     (f"wall.png {CAMERA} --flip", "--flip is not used", f"wall.png {CAMERA}", WALL),
     (f"wall.png {CAMERA} --orient neighbours", "--orient is not used", f"wall.png {CAMERA}", WALL),
-    ("points.ply --orient up", "--orient is (neighbours), or the place of the sensor as x,y,z", "points.ply --orient {0}", POINTS),
+    ("points.ply --orient 1,2", "--orient is (neighbours), or the place of the sensor as x,y,z", "points.ply --orient {0}", POINTS),
     ("turned.ply", r"(--orient neighbours), or the place", "turned.ply {0}", POINTS),
     ("away.pcd", r"give (--flip) to turn them", "away.pcd {0}", POINTS),
     ("gl.pcd", r"give (--axes \w+)", "gl.pcd {0}", WALL),
