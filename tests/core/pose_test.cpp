@@ -19,10 +19,6 @@ using Matrix = std::array<double, 9>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double determinant(const Rotation& r) {
-  return dot(r.row0, cross(r.row1, r.row2));
-}
-
 double distance(const Rotation& a, const Rotation& b) {
   return std::sqrt(squared_norm(a.row0 - b.row0) + squared_norm(a.row1 - b.row1) +
                    squared_norm(a.row2 - b.row2));
