@@ -1,6 +1,7 @@
 #include "libvpm/packing/packing_export.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -11,13 +12,20 @@
 #include "libvpm/view/sphere_files.h"
 
 namespace vpm {
-namespace {
 
 std::string digits(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.9g", value);
   return text.data();
 }
+
+double rounded_up(double value) {
+  constexpr double kStep = 1e-9;  // relative; nine digits are as fine, or finer
+  const double nearest = std::stod(digits(value));
+  return nearest >= value ? nearest : std::stod(digits(value + kStep * std::abs(value)));
+}
+
+namespace {
 
 // Returns x, y and z with `between` between them.
 std::string text_of(Vec3 p, const char* between) {
@@ -62,14 +70,20 @@ ExportFormat export_format(const std::string& path) {
   if (ends(".json")) return ExportFormat::json;
   if (ends(".vtk")) return ExportFormat::vtk;
   if (ends(".yml") || ends(".yaml")) return ExportFormat::yml;
+  if (ends(".xrdf")) return ExportFormat::xrdf;
   if (ends(".urdf")) return ExportFormat::urdf;
   if (ends(".srdf")) return ExportFormat::srdf;
   throw Error(
       ErrorKind::invalid_argument,
       "the name '" + path +
-          "' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .urdf "
-          "or .srdf",
+          "' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .xrdf, "
+          ".urdf or .srdf",
       "export");
+}
+
+bool names_links(ExportFormat format) {
+  return format == ExportFormat::yml || format == ExportFormat::xrdf ||
+         format == ExportFormat::urdf || format == ExportFormat::srdf;
 }
 
 void check_link(ExportFormat format, const std::string& link) {
@@ -98,41 +112,78 @@ std::string packing_as_vtk(const std::vector<Sphere>& spheres) {
   return text;
 }
 
-std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link) {
-  // JSON strings are YAML strings.
-  std::string text = "collision_spheres:\n  " + json_text(link) + ":\n";
-  for (const Sphere& s : spheres) {
-    text += "    - \"center\": [" + text_of(s.center, ", ") +
-            "]\n      \"radius\": " + digits(s.radius) + '\n';
+namespace {
+
+// Returns lines of YAML, indented by so many blanks, that map each link to its spheres. JSON
+// strings are YAML strings.
+std::string yaml_of(const RobotSpheres& robot, std::size_t blanks) {
+  const std::string indent(blanks, ' ');
+  std::string text;
+  for (const auto& [link, spheres] : robot.links) {
+    text += indent + json_text(link) + ":\n";
+    for (const Sphere& s : spheres)
+      text += indent + "  - \"center\": [" + text_of(s.center, ", ") + "]\n" + indent +
+              "    \"radius\": " + digits(s.radius) + '\n';
   }
   return text;
 }
 
-std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link) {
-  const std::string name = xml_text(link);
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<robot name=\"" + name + "\">\n  <link name=\"" + name + "\">\n";
-  for (const Sphere& s : spheres) {
-    text += "    <collision>\n      <origin xyz=\"" + text_of(s.center, " ") +
-            "\" rpy=\"0 0 0\"/>\n      <geometry><sphere radius=\"" + digits(s.radius) +
-            "\"/></geometry>\n    </collision>\n";
-  }
-  return text + "  </link>\n</robot>\n";
+std::string robot_element(const RobotSpheres& robot) {
+  return "<?xml version=\"1.0\"?>\n<robot name=\"" + xml_text(robot.robot) + "\">\n";
 }
 
-std::string packing_as_srdf(const std::vector<Sphere>& spheres, const std::string& link) {
-  const std::string name = xml_text(link);
-  std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"" + name +
-                     "\">\n  <link_sphere_approximation link=\"" + name + "\">\n";
-  for (const Sphere& s : spheres) {
-    text += "    <sphere center=\"" + text_of(s.center, " ") + "\" radius=\"" + digits(s.radius) +
-            "\"/>\n";
+}  // namespace
+
+std::string packing_as_yml(const RobotSpheres& robot) {
+  return "collision_spheres:\n" + yaml_of(robot, 2);
+}
+
+std::string packing_as_xrdf(const RobotSpheres& robot) {
+  const std::string name = json_text(robot.robot + "_spheres");
+  return "format: \"xrdf\"\nformat_version: 1.0\ncollision:\n  geometry: " + name +
+         "\nself_collision:\n  geometry: " + name + "\ngeometry:\n  " + name + ":\n    spheres:\n" +
+         yaml_of(robot, 6);
+}
+
+std::string packing_as_urdf(const RobotSpheres& robot) {
+  std::string text = robot_element(robot);
+  for (const auto& [link, spheres] : robot.links) {
+    text += "  <link name=\"" + xml_text(link) + "\">\n";
+    for (const Sphere& s : spheres)
+      text += "    <collision>\n      <origin xyz=\"" + text_of(s.center, " ") +
+              "\" rpy=\"0 0 0\"/>\n      <geometry><sphere radius=\"" + digits(s.radius) +
+              "\"/></geometry>\n    </collision>\n";
+    text += "  </link>\n";
   }
-  return text + "  </link_sphere_approximation>\n</robot>\n";
+  return text + "</robot>\n";
+}
+
+std::string packing_as_srdf(const RobotSpheres& robot) {
+  std::string text = robot_element(robot);
+  for (const auto& [link, spheres] : robot.links) {
+    text += "  <link_sphere_approximation link=\"" + xml_text(link) + "\">\n";
+    for (const Sphere& s : spheres)
+      text += "    <sphere center=\"" + text_of(s.center, " ") + "\" radius=\"" + digits(s.radius) +
+              "\"/>\n";
+    text += "  </link_sphere_approximation>\n";
+  }
+  return text + "</robot>\n";
+}
+
+std::string robot_as_csv(const RobotSpheres& robot) {
+  std::string text = "link,x,y,z,r\n";
+  for (const auto& [link, spheres] : robot.links) {
+    std::string name = "\"";
+    for (const char c : link) name += c == '"' ? "\"\"" : std::string(1, c);
+    for (const Sphere& s : spheres)
+      text += name + "\"," + text_of(s.center, ",") + ',' + digits(s.radius) + '\n';
+  }
+  return text;
 }
 
 void export_packing(const std::string& path, const std::vector<Sphere>& spheres,
                     const std::string& link) {
+  const RobotSpheres robot{link, {{link, spheres}}};
   const auto content = [&]() -> std::string {
     switch (export_format(path)) {
       case ExportFormat::spheres:
@@ -142,11 +193,13 @@ void export_packing(const std::string& path, const std::vector<Sphere>& spheres,
       case ExportFormat::vtk:
         return packing_as_vtk(spheres);
       case ExportFormat::yml:
-        return packing_as_yml(spheres, link);
+        return packing_as_yml(robot);
+      case ExportFormat::xrdf:
+        return packing_as_xrdf(robot);
       case ExportFormat::urdf:
-        return packing_as_urdf(spheres, link);
+        return packing_as_urdf(robot);
       case ExportFormat::srdf:
-        return packing_as_srdf(spheres, link);
+        return packing_as_srdf(robot);
     }
     return "";
   };

@@ -20,6 +20,10 @@ namespace {
 
 const std::vector<Sphere> kSpheres{{{0.1, -2.0 / 3, 3e-7}, 0.5}, {{10, 20, 30}, 1.0 / 300}};
 
+RobotSpheres one_link(const std::string& link, const std::vector<Sphere>& spheres = kSpheres) {
+  return {link, {{link, spheres}}};
+}
+
 TEST(PackingExport, ExtensionsChooseTheFormat) {
   EXPECT_EQ(export_format("a/b.csv"), ExportFormat::spheres);
   EXPECT_EQ(export_format("b.ply"), ExportFormat::spheres);
@@ -29,6 +33,7 @@ TEST(PackingExport, ExtensionsChooseTheFormat) {
   EXPECT_EQ(export_format("b.vtk"), ExportFormat::vtk);
   EXPECT_EQ(export_format("b.urdf"), ExportFormat::urdf);
   EXPECT_EQ(export_format("b.srdf"), ExportFormat::srdf);
+  EXPECT_EQ(export_format("b.xrdf"), ExportFormat::xrdf);
   EXPECT_EQ(export_format("b.yml"), ExportFormat::yml);
   EXPECT_EQ(export_format("b.yaml"), ExportFormat::yml);
   for (const char* const name : {"b", "b.CSV.txt", "csv", "-", ""})
@@ -42,9 +47,23 @@ TEST(PackingExport, CsvHasAHeaderAndNineDigits) {
 }
 
 TEST(PackingExport, YmlListsTheSpheresOfALink) {
-  EXPECT_EQ(packing_as_yml({kSpheres[0]}, "hand"),
+  EXPECT_EQ(packing_as_yml(one_link("hand", {kSpheres[0]})),
             "collision_spheres:\n  \"hand\":\n"
             "    - \"center\": [0.1, -0.666666667, 3e-07]\n      \"radius\": 0.5\n");
+}
+
+TEST(PackingExport, XrdfNamesItsGeometryWhereSpheresCollide) {
+  EXPECT_EQ(packing_as_xrdf({"arm", {{"a", {kSpheres[1]}}}}),
+            "format: \"xrdf\"\nformat_version: 1.0\ncollision:\n  geometry: \"arm_spheres\"\n"
+            "self_collision:\n  geometry: \"arm_spheres\"\ngeometry:\n  \"arm_spheres\":\n"
+            "    spheres:\n      \"a\":\n        - \"center\": [10, 20, 30]\n"
+            "          \"radius\": 0.00333333333\n");
+}
+
+TEST(PackingExport, CsvOfARobotNamesLinks) {
+  EXPECT_EQ(
+      robot_as_csv({"arm", {{"a \"b\"", {kSpheres[0]}}, {"c", {kSpheres[1]}}}}),
+      "link,x,y,z,r\n\"a \"\"b\"\"\",0.1,-0.666666667,3e-07,0.5\n\"c\",10,20,30,0.00333333333\n");
 }
 
 // Returns the spheres that `pattern` finds in the text, each with its numbers in the order x, y, z,
@@ -77,14 +96,14 @@ TEST(PackingExport, TextIsReadBackToNineDigits) {
                               view::spheres_as(view::SphereFormat::csv, kSpheres)));
   expect_nine_digits(found_by(std::regex("\"center\": \\[" + number + ", " + number + ", " +
                                          number + "\\]\\s+\"radius\": " + number),
-                              packing_as_yml(kSpheres, "hand")));
+                              packing_as_yml(one_link("hand"))));
   expect_nine_digits(found_by(std::regex("<collision>\\s*<origin xyz=\"" + xyz +
                                          "\" rpy=\"0 0 0\"/>\\s*<geometry><sphere radius=\"" +
                                          number + "\"/></geometry>\\s*</collision>"),
-                              packing_as_urdf(kSpheres, "hand")));
+                              packing_as_urdf(one_link("hand"))));
   expect_nine_digits(
       found_by(std::regex("<sphere center=\"" + xyz + "\" radius=\"" + number + "\"/>"),
-               packing_as_srdf(kSpheres, "hand")));
+               packing_as_srdf(one_link("hand"))));
 }
 
 TEST(PackingExport, VtkListsPointsThenRadii) {
@@ -117,23 +136,23 @@ TEST(PackingExport, JsonIsReadBackToTheBit) {
 
 TEST(PackingExport, LinkNamesAreQuoted) {
   const std::string link = "a \"b\" <c> & d\\";
-  EXPECT_NE(packing_as_yml(kSpheres, link).find("\n  \"a \\\"b\\\" <c> & d\\\\\":\n"),
+  EXPECT_NE(packing_as_yml(one_link(link)).find("\n  \"a \\\"b\\\" <c> & d\\\\\":\n"),
             std::string::npos);
-  for (const std::string& text : {packing_as_urdf(kSpheres, link), packing_as_srdf(kSpheres, link)})
+  for (const std::string& text : {packing_as_urdf(one_link(link)), packing_as_srdf(one_link(link))})
     EXPECT_NE(text.find("=\"a &#34;b&#34; &#60;c&#62; &#38; d\\\""), std::string::npos);
   // That a parser of XML reads the same names is tested in tests/tools/cases/pack_export.t.
   for (const char* const bad : {"\x01", "a\x1f", "\x0b", "\xEF\xBF\xBE", "\xEF\xBF\xBF"}) {
-    EXPECT_EQ(test::kind_of_fault([&] { packing_as_urdf(kSpheres, bad); }),
+    EXPECT_EQ(test::kind_of_fault([&] { packing_as_urdf(one_link(bad)); }),
               ErrorKind::invalid_argument);
-    EXPECT_EQ(test::kind_of_fault([&] { packing_as_srdf(kSpheres, bad); }),
+    EXPECT_EQ(test::kind_of_fault([&] { packing_as_srdf(one_link(bad)); }),
               ErrorKind::invalid_argument);
   }
 }
 
 TEST(PackingExport, LinkNamesAreUtf8) {
   const std::string link = "\xC3\xA4\xFF\xFE", shown = "\xC3\xA4\xEF\xBF\xBD\xEF\xBF\xBD";
-  for (const std::string& text : {packing_as_yml(kSpheres, link), packing_as_urdf(kSpheres, link),
-                                  packing_as_srdf(kSpheres, link)}) {
+  for (const std::string& text : {packing_as_yml(one_link(link)), packing_as_urdf(one_link(link)),
+                                  packing_as_srdf(one_link(link))}) {
     EXPECT_NE(text.find('"' + shown + '"'), std::string::npos);
     EXPECT_EQ(text.find('\xFF'), std::string::npos);
   }
