@@ -13,7 +13,7 @@ packages=(
   libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
   libtiff-dev libyaml-cpp-dev
   libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
-  libglu1-mesa-dev libassimp-dev libexpat1-dev
+  libglu1-mesa-dev libassimp-dev libexpat1-dev liburdfdom-dev
   libjs-three python3
 )
 test_packages=(libgtest-dev pkg-config pybind11-dev libdlpack-dev python3-dev)
