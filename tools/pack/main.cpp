@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
+#include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
@@ -29,10 +31,12 @@
 #include "libvpm/packing/validation.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
+#include "tools/common/given_options.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
+#include "tools/pack/arguments.h"
 #include "tools/pack/pack_report.h"
 #include "tools/pack/pack_view.h"
 
@@ -41,22 +45,24 @@ namespace {
 
 constexpr long long kMostSpheres = 0xFFFFFFFE;  // a packing file counts them in 32 bits
 
-struct Arguments {
-  std::string mesh, node, repair, output, report, export_path, link, for_scene, view;
-  std::size_t spheres = 1000;
-  double coverage = 1, min_radius = 0;
-  std::optional<double> inertia_error, max_radius, weld, max_hole;
-  double scale = 1;
-  const CLI::Option* scale_option = nullptr;  // tells whether it was given
-  bool grow = false, validate = false;
-};
-
 // Adds the options that say which spheres are wanted.
 void declare_spheres(CLI::App& app, Arguments& a) {
   begin_group(app, "Spheres");
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")
       ->check(whole_number_in(1, kMostSpheres))
       ->capture_default_str();
+  app.add_option(
+         "--robot-spheres", a.robot_spheres,
+         "With --urdf: so many spheres for the whole robot, shared by the links' volumes, in "
+         "place of --spheres for each link")
+      ->check(whole_number_in(1, kMostSpheres));
+  app.add_flag("--outer", a.outer,
+               "Let the spheres hold every point of the solid, which is proven, rather than lie in "
+               "it: exactly --spheres, which overlap");
+  app.add_option("--inflate", a.inflate, "Write all radii larger by this, metres")
+      ->check(number_in(0, 1e300))
+      ->capture_default_str()
+      ->option_text("M");
   app.add_option("--coverage", a.coverage, "Stop at this fraction of the solid's volume, 0 to 1")
       ->capture_default_str()
       ->option_text("F");
@@ -91,11 +97,18 @@ void declare_reports(CLI::App& app, Arguments& a) {
       "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
       "the defects of a mesh that is refused");
   app.add_option(
-      "--export", a.export_path,
-      "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
-      "(cuRobo), .urdf or .srdf");
+         "--export", a.exports,
+         "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
+         "(cuRobo), .xrdf, .urdf or .srdf. Can be given several times")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
+  app.add_option(
+         "--level", a.level,
+         "Of a packing or tool model: the largest N spheres only; of a model one of its levels")
+      ->check(whole_number_in(0, kMostSpheres))
+      ->capture_default_str();
   app.add_option("--link", a.link,
-                 "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given")
+                 "Name of the link in .yml, .xrdf, .urdf and .srdf; the mesh's name if not given")
       ->option_text("NAME");
 }
 
@@ -130,22 +143,27 @@ void declare_mesh(CLI::App& app, Arguments& a) {
       ->option_text("W");
 }
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option(
-      "mesh", a.mesh,
-      "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard input");
-  declare_reports(app, a);
-  declare_spheres(app, a);
-  declare_mesh(app, a);
+// Adds the options of robots.
+void declare_robot(CLI::App& app, Arguments& a) {
+  begin_group(app, "Robots");
+  app.add_option("--urdf", a.urdf,
+                 "In place of a mesh: a URDF file. The collision geometry of each of its links is "
+                 "packed; --output names a folder then, for a packing of each");
+  app.add_option("--package-path", a.packages,
+                 "Folder that holds the packages which package:// names in a URDF, or that is one. "
+                 "Can be given several times")
+      ->allow_extra_args(false)
+      ->option_text("FOLDER");
 }
 
-SolidOptions solid_options(const Arguments& a) {
-  SolidOptions options{.weld = a.weld, .max_hole = a.max_hole};
-  if (!a.scale_option->empty()) options.scale = a.scale;
-  if (a.repair.empty() || parse_repair(a.repair, options)) return options;
-  throw Error(
-      ErrorKind::invalid_argument,
-      "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("mesh", a.mesh,
+                 "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard "
+                 "input. Or a packing or tool model, whose spheres are written by --export");
+  declare_reports(app, a);
+  declare_spheres(app, a);
+  declare_robot(app, a);
+  declare_mesh(app, a);
 }
 
 // True for what cannot be meant as a mesh: a word without a suffix, and no file.
@@ -169,11 +187,6 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
   return arguments;
 }
 
-bool has_link(ExportFormat format) {
-  return format == ExportFormat::yml || format == ExportFormat::urdf ||
-         format == ExportFormat::srdf;
-}
-
 // Returns the name that a robot description gives the part: --link, or the mesh's file name without
 // folder and extension.
 std::string link_name(const Arguments& a) {
@@ -182,28 +195,74 @@ std::string link_name(const Arguments& a) {
   return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
-void check(const Arguments& a, const CommonOptions& common) {
+// What is made of the mesh, or of what takes its place.
+enum class Job { pack, outer, ready, robot };
+
+Job job_of(const Arguments& a) {
+  if (!a.urdf.empty()) return Job::robot;
+  if (file::is_container(a.mesh)) return Job::ready;
+  return a.outer ? Job::outer : Job::pack;
+}
+
+// Throws Error(invalid_argument) if an option is given that does not go with the job.
+void check_options(const CLI::App& app, Job job) {
+  struct Misplaced {
+    const char* with;
+    std::vector<const char*> options;
+  };
+  const std::vector<const char*> of_packing{"--coverage",   "--inertia-error", "--min-radius",
+                                            "--max-radius", "--for-scene",     "--validate",
+                                            "--view"};
+  std::map<Job, Misplaced> rules{
+      {Job::pack, {"a mesh", {"--level", "--robot-spheres", "--package-path"}}},
+      {Job::outer, {"--outer", {"--level", "--robot-spheres", "--package-path", "--grow"}}},
+      {Job::ready,
+       {"a packing or tool model",
+        {"--outer", "--robot-spheres", "--package-path", "--grow", "--spheres", "--output",
+         "--report", "--node", "--scale", "--weld", "--repair", "--max-hole"}}},
+      {Job::robot, {"--urdf", {"--level", "--node", "--scale", "--link"}}}};
+  auto& [with, options] = rules.at(job);
+  if (job != Job::pack) options.insert(options.end(), of_packing.begin(), of_packing.end());
+  if (job == Job::outer) options.push_back("--output");
+  for (const char* const option : options)
+    if (is_given(app, option))
+      refuse_usage(std::string(option) + " does not go with " + with + ": leave it out");
+}
+
+void check_outputs(const Arguments& a, const CommonOptions& common, Job job) {
+  std::vector<OutputFile> outputs{{"--report", a.report, std::nullopt, OutputForm::json},
+                                  {"--view", a.view, std::nullopt, OutputForm::page}};
+  if (job != Job::robot) outputs.push_back({"--output", a.output, file::Kind::packing});
+  for (const std::string& path : a.exports) outputs.push_back({"--export", path, std::nullopt});
+  check_files({a.mesh, a.urdf, a.for_scene}, outputs, common);
+}
+
+void check(const CLI::App& app, const Arguments& a, const CommonOptions& common) {
+  const Job job = job_of(a);
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
     refuse_usage("--max-hole belongs to --repair voxel or flood");
-  if (a.mesh.empty())
+  if (a.mesh.empty() && a.urdf.empty())
     refuse_usage(
         "no mesh is given: name an OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX file, or - "
         "for a pipe");
-  if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
+  if (!a.mesh.empty() && !a.urdf.empty())
+    refuse_usage("--urdf takes the place of the mesh " + a.mesh + ": give one of them");
+  check_options(app, job);
+  if (a.output.empty() && a.exports.empty() && a.report.empty() && a.view.empty())
     refuse_usage("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
     refuse_usage("only one of the mesh and --for-scene can be standard input");
-  const bool names_link = !a.export_path.empty() && has_link(export_format(a.export_path));
-  if (!a.link.empty() && !names_link)
-    refuse_usage("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
-  if (names_link) check_link(export_format(a.export_path), link_name(a));
-  check_files({a.mesh, a.for_scene},
-              {{"--output", a.output, file::Kind::packing},
-               {"--report", a.report, std::nullopt, OutputForm::json},
-               {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt, OutputForm::page}},
-              common);
+  bool names_a_link = false;
+  for (const std::string& path : a.exports) {
+    const ExportFormat format = export_format(path);
+    names_a_link = names_a_link || names_links(format);
+    if (job != Job::robot) check_link(format, link_name(a));
+  }
+  if (!a.link.empty() && !names_a_link)
+    refuse_usage(
+        "--link is a name in .yml, .xrdf, .urdf and .srdf; give --export with one of these");
+  check_outputs(a, common, job);
 }
 
 // Makes the solid; of a mesh that is refused, --view shows why.
@@ -325,7 +384,9 @@ void say_validation(const Program& program, const Validation& v, CheckedSolid& c
 Packing make_packing(const Program& program, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
   nlohmann::json parameters = program.parameters();
-  for (const char* const name : {"validate", "link"}) parameters.erase(name);  // no effect on it
+  for (const char* const name :
+       {"validate", "link", "inflate", "level", "outer", "robot-spheres", "urdf", "package-path"})
+    parameters.erase(name);  // no effect on it
   Packing packing;
   packing.spheres = std::move(spheres);
   packing.provenance.json() = {{"tool", program.name()},
@@ -337,8 +398,10 @@ Packing make_packing(const Program& program, const std::string& input_hash, Chec
   return packing;
 }
 
-void run(const Program& program, Arguments a) {
-  check(a, program.common());
+void run(Program& program, Arguments a) {
+  check(program.app(), a, program.common());
+  if (job_of(a) == Job::robot) return run_robot(program, a);
+  if (job_of(a) == Job::ready) return export_ready(program, a);
   if (!a.view.empty()) view::check_available();
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
@@ -348,6 +411,7 @@ void run(const Program& program, Arguments a) {
   for (const std::string& note : checked.notes) program.note(prefix + note);
   for (const std::string& warning : checked.warnings) program.warn(prefix + warning);
 
+  if (a.outer) return run_outer(program, a, checked);
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(program, checked.solid, a);
   PackResult result = pack_checked(program, a, checked);
@@ -370,7 +434,7 @@ void run(const Program& program, Arguments a) {
     file::write_all(a.report, report.dump(2) + "\n");
   }
   if (!a.view.empty()) write_packing_view(a.view, a.mesh, checked, result);
-  if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
+  write_exports(a, result.spheres);
   if (!a.output.empty()) {
     Packing packing =
         make_packing(program, file::content_hash({bytes}), std::move(checked), result.spheres);
@@ -381,6 +445,28 @@ void run(const Program& program, Arguments a) {
 }
 
 }  // namespace
+
+SolidOptions solid_options(const Arguments& a) {
+  SolidOptions options{.weld = a.weld, .max_hole = a.max_hole};
+  if (!a.scale_option->empty()) options.scale = a.scale;
+  if (a.repair.empty() || parse_repair(a.repair, options)) return options;
+  throw Error(
+      ErrorKind::invalid_argument,
+      "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+}
+
+std::vector<Sphere> inflated(const Arguments& a, std::vector<Sphere> spheres) {
+  if (a.inflate == 0) return spheres;
+  for (Sphere& s : spheres)
+    s.radius = a.outer ? rounded_up(s.radius + a.inflate) : s.radius + a.inflate;
+  return spheres;
+}
+
+void write_exports(const Arguments& a, const std::vector<Sphere>& spheres) {
+  for (const std::string& path : a.exports)
+    export_packing(path, inflated(a, spheres), link_name(a));
+}
+
 }  // namespace vpm::tools
 
 int main(int argc, char** argv) {
@@ -391,6 +477,8 @@ int main(int argc, char** argv) {
   program.show_examples({
       "vpm-pack tool.off -o tool.vpmp --spheres 1000",
       "vpm-pack tool.off --spheres 50 --grow --export tool.yml --link gripper   # for cuRobo",
+      "vpm-pack --urdf robot.urdf --robot-spheres 60 --outer --export robot.yml --export "
+      "robot.srdf",
       "vpm-pack tool.off -o open.vpmp --scale 0.001 --repair voxel   # millimetres, open",
   });
   std::string holes = "--repair=holes";
