@@ -2,9 +2,13 @@
 // given, since the libraries that it needs take longer to load than a query takes.
 #pragma once
 
+#include <vpm/robot.h>
 #include <vpm/solid.h>
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace vpm::tools {
 
@@ -28,12 +32,27 @@ using ReadSolid = bool (*)(const char* mesh, const SolidOptions* options, bool w
                            SayOfMesh say, void* listener, std::optional<SolidBody>* body,
                            PackingFault* fault);
 
+// Reads a robot and the pairs of its links that `srdf` ignores (vpm/robot.h). Returns false, and
+// fills `fault`, where that fails.
+using ReadRobot = bool (*)(const char* urdf, const RobotOptions* options, const char* srdf,
+                           Robot* robot, std::vector<std::array<std::size_t, 2>>* ignored,
+                           PackingFault* fault);
+
+// Sets `body` to the solid of a link, without what forces need, and writes its tool model, packed
+// with `spheres` spheres, to the file `output` if that is not null. Thread-safe. Returns false, and
+// fills `fault`, where that fails.
+using PrepareLink = bool (*)(const Robot* robot, std::size_t link, unsigned spheres,
+                             const char* output, SayOfMesh say, void* listener,
+                             std::optional<SolidBody>* body, PackingFault* fault);
+
 // Caps the threads of the plug-in, to be called once, before it works.
 using UseThreads = void (*)(int threads);
 
 inline constexpr const char* kMeshPlugin = "libvpm_mesh_plugin.so";
 inline constexpr const char* kPackMesh = "vpm_pack_mesh";
 inline constexpr const char* kReadSolid = "vpm_read_solid";
+inline constexpr const char* kReadRobot = "vpm_read_robot";
+inline constexpr const char* kPrepareLink = "vpm_prepare_link";
 inline constexpr const char* kUseThreads = "vpm_use_threads";
 
 }  // namespace vpm::tools

@@ -118,4 +118,34 @@ SolidBody solid_of_mesh(const Program& program, const std::string& path, bool wi
   return *solid;
 }
 
+RobotOfFiles read_robot_files(const Program& program, const std::string& urdf,
+                              const RobotOptions& options, const std::string& srdf) {
+  const auto read = reinterpret_cast<ReadRobot>(function_of_meshes(kReadRobot));
+  reinterpret_cast<UseThreads>(function_of_meshes(kUseThreads))(program.common().threads);
+  RobotOfFiles files;
+  PackingFault fault;
+  if (!read(urdf.c_str(), &options, srdf.c_str(), &files.robot, &files.ignored, &fault))
+    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
+  for (const auto& [is_warning, text] : files.robot.remarks)
+    is_warning ? program.warn(urdf + ": " + text) : program.note(urdf + ": " + text);
+  return files;
+}
+
+LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_t link,
+                          unsigned spheres) {
+  const auto prepare = reinterpret_cast<PrepareLink>(function_of_meshes(kPrepareLink));
+  const std::string name = "link '" + file::shown(robot.links[link].name) + "'";
+  Listener listener{program, name};
+  std::optional<MemoryFile> model;
+  if (spheres > 0) model.emplace();
+  const std::string path = model ? model->path() : "";
+  std::optional<SolidBody> solid;
+  PackingFault fault;
+  if (!prepare(&robot, link, spheres, model ? path.c_str() : nullptr, say_of_mesh, &listener,
+               &solid, &fault))
+    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem,
+                fault.where[0] == 0 ? name : fault.where, fault.hint);
+  return {*solid, model ? std::optional(Tool::read(path)) : std::nullopt};
+}
+
 }  // namespace vpm::tools

@@ -1,10 +1,15 @@
 // Tools of meshes, packed with spheres and built in memory.
 #pragma once
 
+#include <vpm/robot.h>
 #include <vpm/solid.h>
 #include <vpm/tool.h>
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/common/program.h"
 
@@ -29,5 +34,26 @@ Tool tool_of_mesh(const Program& program, const std::string& path);
 // Returns the solid of a mesh, prepared `with_force` for what forces need, too. Says and throws the
 // same.
 SolidBody solid_of_mesh(const Program& program, const std::string& path, bool with_force);
+
+// A robot, and the pairs of its links that are not asked whether they share volume.
+struct RobotOfFiles {
+  Robot robot;
+  std::vector<std::array<std::size_t, 2>> ignored;
+};
+
+// Reads a robot and its SRDF, if that is not empty, and says what it lets doubt. Throws what
+// read_robot() and ignored_pairs() do, and Error(unavailable) where they are not built.
+RobotOfFiles read_robot_files(const Program& program, const std::string& urdf,
+                              const RobotOptions& options, const std::string& srdf);
+
+struct LinkBodies {
+  SolidBody solid;
+  std::optional<Tool> tool;
+};
+
+// Returns the solid of a link and, if `spheres` is not 0, its tool of that many spheres. Says what
+// is said of its mesh.
+LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_t link,
+                          unsigned spheres);
 
 }  // namespace vpm::tools

@@ -112,6 +112,26 @@ void declare_assembly(CLI::App& app, Arguments& a) {
       ->option_text("[holes|voxel|flood]");
 }
 
+void declare_robot(CLI::App& app, Arguments& a) {
+  begin_group(app, "Robots");
+  app.add_option(
+      "--urdf", a.urdf,
+      "Instead of --tool: a robot (URDF), whose links are asked at the configurations of "
+      "--joints, and which of them share volume");
+  app.add_option(
+      "--joints", a.joints,
+      "Configurations of --urdf, a line of JSON each: an object of joints' names and values "
+      "(rad, m), or an array of the values of all movable joints in the order of the URDF");
+  app.add_option("--srdf", a.srdf,
+                 "Pairs of links that are not asked whether they share volume; if not given, those "
+                 "that a joint joins");
+  app.add_option("--package-path", a.packages,
+                 "Folder that holds the packages which package:// names in a URDF, or that is one. "
+                 "Can be given several times")
+      ->allow_extra_args(false)
+      ->option_text("FOLDER");
+}
+
 void declare_requests(CLI::App& app, Arguments& a) {
   begin_group(app, "How it is asked");
   app.add_option(
@@ -274,6 +294,7 @@ void declare(CLI::App& app, Arguments& a) {
   declare_inputs(app, a);
   declare_outputs(app, a);
   declare_assembly(app, a);
+  declare_robot(app, a);
   declare_requests(app, a);
   declare_measure(app, a);
   declare_collisions(app, a);
@@ -294,10 +315,10 @@ void check_names(const Arguments& a, const CommonOptions& common) {
   if (std::ranges::count(solids, "-") > 0)
     throw Error(ErrorKind::invalid_argument, "--solid is a file: standard input holds none");
   if (std::ranges::count(a.tools, "-") + std::ranges::count(a.clouds, "-") + (a.pairs == "-") +
-          std::ranges::count(a.poses, "-") >
+          std::ranges::count(a.poses, "-") + (a.joints == "-") >
       1)
     throw Error(ErrorKind::invalid_argument,
-                "only one of --tool, --cloud, --pairs and --poses can be standard input");
+                "only one of --tool, --cloud, --pairs, --poses and --joints can be standard input");
   if (a.serve && std::ranges::count(a.tools, "-") + std::ranges::count(a.clouds, "-") > 0)
     throw Error(
         ErrorKind::invalid_argument,
@@ -307,7 +328,8 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                 "--serve answers in JSON: let the name of --output end in .jsonl");
   KeptLines::check(a.output, leftover_of(a, common));
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  std::vector<std::string> inputs{a.pairs, a.replay.frames, a.replay.camera_poses};
+  std::vector<std::string> inputs{a.pairs, a.replay.frames, a.replay.camera_poses,
+                                  a.urdf,  a.joints,        a.srdf};
   inputs.insert(inputs.end(), a.clouds.begin(), a.clouds.end());
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   inputs.insert(inputs.end(), solids.begin(), solids.end());

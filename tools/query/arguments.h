@@ -30,8 +30,10 @@ struct ReplayArguments {
 // Values of the options, in the units that --help names.
 struct Arguments {
   std::vector<std::string> tools;
-  std::vector<std::string> solids;   // each FILE or FILE@POSE
-  std::string pairs, unit, repair;   // of an assembly
+  std::vector<std::string> solids;  // each FILE or FILE@POSE
+  std::string pairs, unit, repair;  // of an assembly
+  std::string urdf, joints, srdf;   // of a robot
+  std::vector<std::string> packages;
   std::size_t contacts = 0;          // of each pose or pair; 0: none are told
   std::optional<double> fail_above;  // m^3; of an assembly in the cube of its unit
   std::vector<std::string> clouds;   // one, or depth images of several cameras

@@ -17,6 +17,7 @@ void run(Program& program, const Arguments& arguments) {
   check_names(arguments, program.common());
   if (mode == Mode::pairs) return run_pairs(program, arguments);
   program.name_no_more({"--unit", "--repair"});
+  if (mode == Mode::robot) return run_robot(program, arguments);
   QuerySetup setup(program, arguments);
   switch (mode) {
     case Mode::poses:
@@ -36,7 +37,8 @@ void run(Program& program, const Arguments& arguments) {
     case Mode::server:
       run_server(setup);
       break;
-    case Mode::pairs:  // has no tool, hence no setup
+    case Mode::pairs:  // these have no tool of a file, hence no setup
+    case Mode::robot:
       break;
   }
   if (mode == Mode::server) return;
@@ -60,6 +62,7 @@ int main(int argc, char** argv) {
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",
       "vpm-query --tool tool.off --cloud scene.vpmc --poses poses.jsonl -o results.csv",
       "vpm-query --tool tool.vpmg --frames clouds --poses path.txt -o steps.jsonl",
+      "vpm-query --urdf robot.urdf --joints joints.jsonl --cloud scene.vpmc",
   });
   program.computes_on_devices();
   return program.run(argc, argv, [&] { run(program, arguments); });

@@ -70,4 +70,29 @@ extern "C" __attribute__((visibility("default"))) bool vpm_read_solid(
       fault);
 }
 
+extern "C" __attribute__((visibility("default"))) bool vpm_read_robot(
+    const char* urdf, const RobotOptions* options, const char* srdf, Robot* robot,
+    std::vector<std::array<std::size_t, 2>>* ignored, PackingFault* fault) {
+  return is_done(
+      [&] {
+        *robot = read_robot(urdf, *options);
+        *ignored = ignored_pairs(*robot, srdf);
+      },
+      fault);
+}
+
+extern "C" __attribute__((visibility("default"))) bool vpm_prepare_link(
+    const Robot* robot, std::size_t link, unsigned spheres, const char* output, SayOfMesh say,
+    void* listener, std::optional<SolidBody>* body, PackingFault* fault) {
+  return is_done(
+      [&] {
+        const SolidMesh solid = link_solid(*robot, link);
+        // Shapes of one link overlap as a rule, which is no reason for a warning.
+        if (robot->links[link].shapes.size() == 1) tell(solid, say, listener);
+        body->emplace(solid, false);
+        if (output != nullptr) build_tool(pack(solid, {.spheres = spheres})).write(output);
+      },
+      fault);
+}
+
 }  // namespace vpm::tools

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "tools/common/error_text.h"
+#include "tools/common/given_options.h"
 
 namespace vpm::tools {
 namespace {
@@ -24,17 +25,17 @@ struct Row {
 // Options that are not in this table go with all modes.
 constexpr Row kTable[] = {
     // poses, batches, coupling, frames, several tools, several tools in frames,
-    // server, pairs
+    // server, pairs, robot; what is left out at the end is `no`
     {"--tool",
      {required, required, required, required, required, required, required, no},
      "give the .vpmg that vpm-graph wrote"},
     {"--cloud",
-     {scene, scene, scene, no, scene, no, yes, no},
+     {scene, scene, scene, no, scene, no, yes, no, yes},
      "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
-    {"--solid", {scene, scene, scene, yes, scene, yes, yes, no}},
+    {"--solid", {scene, scene, scene, yes, scene, yes, yes, no, yes}},
     {"--bodies", {yes, yes, no, no, no, no, no, no}},
     {"--contacts", {yes, yes, no, yes, yes, yes, yes, yes}},
-    {"--pose", {either, either, no, no, either, no, no, no}},
+    {"--pose", {either, either, no, no, either, no, no, no, yes}},
     {"--poses",
      {either, either, required, required, either, required, no, yes},
      "give the path of the haptic device, or with --frames the path of the "
@@ -44,7 +45,7 @@ constexpr Row kTable[] = {
     {"--deadline-us", {yes, no, yes, yes, no, no, yes, no}},
     {"--coherent", {yes, no, yes, yes, no, no, yes, no}},
     {"--collides", {yes, yes, no, yes, yes, yes, yes, no}},
-    {"--fail-above", {yes, yes, no, yes, yes, yes, yes, yes}},
+    {"--fail-above", {yes, yes, no, yes, yes, yes, yes, yes, yes}},
     {"--collides-only", {yes, no, no, no, no, no, no, no}},
     {"--unseen", {yes, yes, no, yes, yes, yes, yes, no}},
     {"--spheres-out", {yes, yes, yes, yes, no, no, no, no}},
@@ -63,15 +64,21 @@ constexpr Row kTable[] = {
     {"--view", {yes, yes, yes, yes, yes, yes, no, no}},
     {"--resume", {yes, yes, yes, yes, yes, yes, no, no}},
     {"--serve", {no, no, no, no, no, no, yes, no}},
-    {"--measure", {yes, yes, yes, yes, yes, yes, yes, no}},
-    {"--stiffness", {yes, yes, yes, yes, yes, yes, yes, no}},
-    {"--shadows", {yes, yes, yes, yes, yes, yes, yes, no}},
-    {"--raw-points", {yes, yes, yes, yes, yes, yes, yes, no}},
+    {"--measure", {yes, yes, yes, yes, yes, yes, yes, no, yes}},
+    {"--stiffness", {yes, yes, yes, yes, yes, yes, yes, no, yes}},
+    {"--shadows", {yes, yes, yes, yes, yes, yes, yes, no, yes}},
+    {"--raw-points", {yes, yes, yes, yes, yes, yes, yes, no, yes}},
     {"--level", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--max-error", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--for-scene", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--stats", {yes, yes, yes, yes, yes, yes, yes, no}},
     {"--pairs", {no, no, no, no, no, no, no, yes}},
+    {"--urdf", {no, no, no, no, no, no, no, no, yes}},
+    {"--joints",
+     {no, no, no, no, no, no, no, no, required},
+     "give configurations of the robot, a line of JSON each"},
+    {"--srdf", {no, no, no, no, no, no, no, no, yes}},
+    {"--package-path", {no, no, no, no, no, no, no, no, yes}},
     {"--unit", {no, no, no, no, no, no, no, yes}},
     {"--repair", {no, no, no, no, no, no, no, yes}},
 };
@@ -132,23 +139,8 @@ constexpr Words kWords[kModes] = {
     {"several tools in recorded frames", "chosen by --frames and more than one --tool"},
     {"requests", "chosen by --serve"},
     {"pairs of an assembly", "chosen by --pairs"},
+    {"a robot", "chosen by --urdf"},
 };
-
-// True if both are the same text or the same number.
-bool is_same_value(const std::string& a, const std::string& b) {
-  double x = 0, y = 0;
-  if (CLI::detail::lexical_cast(a, x) && CLI::detail::lexical_cast(b, y)) return x == y;
-  return a == b;
-}
-
-// True if the option has a value other than its default.
-bool is_given(const CLI::App& app, const char* name) {
-  const CLI::Option& option = *app.get_option(name);
-  if (option.count() == 0) return false;
-  if (option.get_expected_max() == 0) return option.as<bool>();
-  if (option.get_expected_min() == 0) return true;  // its default is that of a value left out
-  return !is_same_value(option.results().back(), option.get_default_str());
-}
 
 // True if an option that says the same is given.
 bool is_told_by_another(const CLI::App& app, const std::string& name) {
@@ -213,6 +205,7 @@ void check_paths(const CLI::App& app, Mode mode) {
 
 Mode mode_of(const Arguments& a) {
   if (!a.pairs.empty()) return Mode::pairs;
+  if (!a.urdf.empty()) return Mode::robot;
   if (a.serve) return Mode::server;
   const bool are_several = a.tools.size() > 1;
   if (!a.replay.frames.empty()) return are_several ? Mode::tools_in_frames : Mode::frames;

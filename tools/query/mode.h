@@ -17,9 +17,10 @@ enum class Mode {
   several_tools,    // poses of several tools in a cloud, one by one or many at once
   tools_in_frames,  // several tools through recorded frames, on one path or on one for each
   server,           // requests on standard input, answered line by line
-  pairs             // all pairs of an assembly's parts
+  pairs,            // all pairs of an assembly's parts
+  robot             // links of a robot at configurations of its joints
 };
-constexpr std::size_t kModes = 8;
+constexpr std::size_t kModes = 9;
 
 // Returns the mode that the options choose.
 Mode mode_of(const Arguments& arguments);
@@ -38,5 +39,7 @@ void run_coupling(QuerySetup& setup);
 void run_frames(QuerySetup& setup);
 void run_several_tools(QuerySetup& setup);
 void run_server(QuerySetup& setup);
+// Makes tools and setup itself, of a robot.
+void run_robot(Program& program, const Arguments& arguments);
 
 }  // namespace vpm::tools

@@ -4,6 +4,7 @@
 #include <vpm/error.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model.h"
@@ -78,18 +79,22 @@ void write_spheres(const std::string& path, std::span<const Sphere> spheres,
 }  // namespace
 
 QuerySetup::QuerySetup(const Program& p, const Arguments& a)
+    : QuerySetup(p, a, read_tools(p, a.tools), a.tools) {}
+
+QuerySetup::QuerySetup(const Program& p, const Arguments& a, std::vector<Tool> named,
+                       const std::vector<std::string>& names)
     : program(p),
       arguments(a),
       level(level_request(a)),
-      tools(read_tools(p, a.tools)),
+      tools(std::move(named)),
       solids(read_solids(p, a.solids)),
       points(denoising_of(a)),
       collisions(a.collides, a.unseen_limit, a.fail_above) {
-  if (!solids.empty()) check_surfaces(tools, a.tools);
+  if (!solids.empty()) check_surfaces(tools, names);
   options = query_options(program, a);
   if (a.view.empty()) return;
-  view.emplace(tools, a.tools, options, "vpm-query");
-  for (std::size_t k = 0; k < tools.size(); ++k)
+  view.emplace(tools, names, options, "vpm-query");
+  for (std::size_t k = 0; k < a.tools.size(); ++k)
     if (a.tools[k] != "-" && !is_mesh_file(a.tools[k]))
       view::PoseView::of(*view).set_mesh(k, read_display_mesh(a.tools[k]));
   for (std::size_t k = 0; k < solids.size(); ++k)

@@ -20,13 +20,16 @@ struct QuerySetup {
   // Reads the tools. The program and its arguments must outlive this. Throws Error for what the
   // arguments, the tools or the device refuse.
   QuerySetup(const Program& program, const Arguments& arguments);
+  // The same for tools that are not those of files, with what they are called.
+  QuerySetup(const Program& program, const Arguments& arguments, std::vector<Tool> named,
+             const std::vector<std::string>& names);
   QuerySetup(const QuerySetup&) = delete;
   QuerySetup& operator=(const QuerySetup&) = delete;
 
   const Program& program;
   const Arguments& arguments;
   LevelRequest level;
-  std::vector<Tool> tools;  // one per --tool
+  std::vector<Tool> tools;  // one per --tool, or link of a robot
   QueryOptions options;
   std::vector<Body> solids;  // one per --solid
   Denoising points;          // how points without a camera are read
