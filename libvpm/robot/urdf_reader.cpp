@@ -247,7 +247,7 @@ class Reader {
     for (auto part = std::next(rest.begin()); part != rest.end(); ++part) inside /= *part;
     std::error_code fault;
     const auto is_folder = [&](const fs::path& one) { return fs::is_directory(one, fault); };
-    for (const std::string& given : options_.packages) {
+    for (const std::string& given : options_.package_path) {
       const fs::path folder = fs::absolute(given).lexically_normal();
       if (is_folder(folder / package)) return folder / package / inside;
       const fs::path last =
@@ -263,7 +263,7 @@ class Reader {
                " has a mesh, is not "
                "found",
            path_,
-           "give `packages` the folder that holds the folder " + file::shown(package.string()));
+           "give `package_path` the folder that holds the folder " + file::shown(package.string()));
   }
 
   // Sets which joints have values of their own, in the order of the file; urdfdom's is alphabetic.

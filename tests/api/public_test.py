@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-MOST_HEADERS, MOST_LINES = 18, 1540
+MOST_HEADERS, MOST_LINES = 20, 1720
 FOREIGN = re.compile(r"#include\s*<(?!vpm/)[^>]*[/.][^>]*>|cuda_runtime|nlohmann|tbb::|openvdb|OpenMesh", re.IGNORECASE)
 
 headers = sorted(pathlib.Path(sys.argv[1]).glob("*.h"))

@@ -25,6 +25,7 @@ COLUMNS = {
     "several `--tool` with `--frames`": {"--tool": ["t.vpmg", "u.vpmg"], "--frames": "f", "--poses": "p.txt"},
     "`--serve`": {"--tool": "t.vpmg", "--serve": None},
     "`--pairs`": {"--pairs": "assembly.json"},
+    "`--urdf`": {"--urdf": "r.urdf", "--joints": "j.jsonl"},
 }
 POSE = "0,0,1,0,0,0,1"
 # Values that each option accepts and that are not its default; all others take the name of a missing file.

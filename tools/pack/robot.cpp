@@ -189,7 +189,7 @@ nlohmann::json report_of(const Arguments& a, const Robot& robot,
 
 void run_robot(const Program& program, const Arguments& a) {
   check_exports(a);
-  const Robot robot = read_robot(a.urdf, {.packages = a.packages});
+  const Robot robot = read_robot(a.urdf, {.package_path = a.packages});
   for (const Remark& remark : robot.remarks)
     remark.is_warning ? program.warn(a.urdf + ": " + remark.text)
                       : program.note(a.urdf + ": " + remark.text);

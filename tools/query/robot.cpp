@@ -40,7 +40,7 @@ nlohmann::ordered_json as_json(const Pose& pose) {
 class ReadyRobot {
  public:
   ReadyRobot(const Program& program, const Arguments& a)
-      : files_(read_robot_files(program, a.urdf, {.packages = a.packages}, a.srdf)) {
+      : files_(read_robot_files(program, a.urdf, {.package_path = a.packages}, a.srdf)) {
     const bool has_scene = !a.clouds.empty() || !a.solids.empty();
     const unsigned spheres = !has_scene ? 0 : a.clouds.empty() ? kSpheresForSolids : kSpheres;
     for (std::size_t k = 0; k < robot().links.size(); ++k) {

@@ -1,8 +1,9 @@
 // Robots as URDF describes them: links with their collision geometry, joints, and where links are.
 // Library vpm::solid, but for link_poses(), which is in vpm::vpm.
 //
-//   const vpm::Robot robot = vpm::read_robot("arm.urdf", {.packages = {"/opt/ros/share"}});
-//   const std::vector<vpm::Pose> poses = vpm::link_poses(robot, joint_values);
+//   const vpm::Robot robot = vpm::read_robot("arm.urdf", {.package_path = {"/opt/ros/share"}});
+//   const std::vector<double> values(robot.movable.size(), 0);
+//   const std::vector<vpm::Pose> poses = vpm::link_poses(robot, values);
 //
 // Functions are thread-safe.
 #pragma once
@@ -68,7 +69,7 @@ struct Robot {
 struct RobotOptions {
   // Where `package://NAME/…` is looked for: folders that hold NAME, or that are it. The folders
   // about the file are asked last.
-  std::vector<std::string> packages = {};
+  std::vector<std::string> package_path = {};
 };
 
 // Reads a URDF file. Throws Error(refused), saying how to mend it, for what is no URDF (xacro,
