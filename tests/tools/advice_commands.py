@@ -8,6 +8,9 @@ REMOVED = f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove small.off"
 AT_ONCE, LATER = (f'{{"time":{time},"solids":[[{POSE}]]}}' for time in (0, 9))
 # Clouds of more cameras than are one body.
 MANY = f"[ -f many17.vpmc ] || for k in $(seq 17); do vpm-normals wall.pgm {CAMERA} --camera-pose 0.00$k,0,0,0,0,0,1 -o many$k.vpmc --quiet; done"
+# A query over a list of one cloud, in a folder of its own.
+LIST = "rm -rf listed; echo wall.vpmc > out.txt; vpm-query --tool small.vpmg --poses poses.txt --list out.txt --quiet"
+LISTED = f"{LIST} -o listed"
 
 # Row: command; advice; command that follows it; volume, if it asks for one; relative tolerance.
 COMMANDS = [
@@ -398,6 +401,24 @@ COMMANDS = [
      "give each of them a name of its own",
      f"mv same/b/1.pgm same/b/2.pgm && printf '%s\\n' '0 a/1.pgm' '1 b/2.pgm' > same/list.txt && "
      f"vpm-normals same/list.txt {CAMERA} -o clouds_5/"),
+    # Lists
+    (f"{LISTED} --cloud wall.vpmc", "is what --list out.txt names: leave one of them out", LISTED),
+    (LIST, "give (-o) FOLDER", f"{LIST} {{0}} listed"),
+    (f"{LIST} -o poses.txt", r"is no folder: name one for the outputs", LISTED),
+    (f"{LISTED} --stats out.json", r"put (\{\}) in its name", f"{LISTED} --stats out{{0}}.json"),
+    (f"{LISTED} --resume", "leave --resume out", LISTED),
+    (f"{LISTED} --shard 5/4", "give i/n, such as (1/4)", f"{LISTED} --shard {{0}}"),
+    (f"{TOOL} --poses poses.txt --shard 1/4", "go with (--list)", LISTED.replace("--list", "{0}") + " --shard 1/4"),
+    (LISTED.replace("echo", "printf '%s\\n' ./wall.vpmc"), "name another output in a line",
+     LISTED.replace("echo", "printf '%s\\n' '{\"cloud\":\"wall.vpmc\",\"output\":\"listed/other.jsonl\"}'")),
+    (LISTED.replace("wall.vpmc", "'#'"), "the list is empty; give the name of an input on each line", LISTED),
+    (LISTED.replace("wall.vpmc", "'{\"level\":3}'"), r'give options as in a configuration: \{"cloud":"FILE"\}',
+     LISTED.replace("wall.vpmc", "'{\"cloud\":\"wall.vpmc\"}'")),
+    (LISTED.replace("wall.vpmc", "$'\\1.vpmc'"), "give the file another name", LISTED),
+    (f"{LISTED} && vpm-query --tool small.vpmg --pose {POSE} --list out.txt -o listed", r"give (--force) to make all of the list anew",
+     f"{LISTED} && vpm-query --tool small.vpmg --pose {POSE} --list out.txt -o listed {{0}}"),
+    (f"{LISTED} && rm listed/.wall.jsonl.done && {LISTED[len('rm -rf listed; '):]}", "give (--force) to overwrite it",
+     f"{LISTED} && rm listed/.wall.jsonl.done && {LISTED[len('rm -rf listed; '):]} {{0}}"),
     # Requests
     (f"{TOOL} --tool small.vpmg --serve", "give one --tool", f"{TOOL} --serve"),
     (f"{TOOL} --serve -o out.csv", r"let the name of (--output) end in (\.jsonl)", f"{TOOL} --serve {{0}} out{{1}}"),

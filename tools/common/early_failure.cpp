@@ -15,7 +15,7 @@ namespace vpm::tools {
 namespace {
 
 std::terminate_handler usual_handler = nullptr;
-const char* program = "vpm";
+const char* program_name = "vpm";
 
 std::string reason() {
   try {
@@ -35,7 +35,7 @@ std::string reason() {
 }
 
 [[noreturn]] void say_and_exit() {
-  const std::string message = program + std::string(": error: cannot start: ") +
+  const std::string message = program_name + std::string(": error: cannot start: ") +
                               (std::current_exception() ? reason() : "a library fails") + '\n';
   // Gives the exit code also where standard error is closed.
   if (::write(STDERR_FILENO, message.data(), message.size()) < 0)
@@ -46,7 +46,7 @@ std::string reason() {
 void watch_the_start(int, char** argv, char**) {
   if (argv != nullptr && argv[0] != nullptr) {
     const char* const slash = std::strrchr(argv[0], '/');
-    program = slash != nullptr ? slash + 1 : argv[0];
+    program_name = slash != nullptr ? slash + 1 : argv[0];
   }
   usual_handler = std::set_terminate(say_and_exit);
 }

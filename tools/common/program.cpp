@@ -280,13 +280,28 @@ nlohmann::json Program::parameters() const {
     if (option->get_positional()) all.erase(config_key(*option));
   }
   for (const char* name :
-       {"device", "threads", "quiet", "verbose", "force",                     // change no result
-        "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
-        "mesh", "for-scene", "tool", "cloud", "poses",                        // inputs
-        "camera-poses", "frame-rate"}) {  // of recordings, whose frames know what comes of them
+       {"device",       "threads",   "quiet",  "verbose", "force",  // change no result
+        "output",       "report",    "export", "stats",   "spheres-out", "out", "view",  // outputs
+        "mesh",         "for-scene", "tool",   "cloud",   "poses",                       // inputs
+        "list",         "shard",     "jobs",  // which inputs, and when
+        "camera-poses", "frame-rate"}) {      // of recordings, whose frames know what comes of them
     all.erase(name);
   }
   return all;
+}
+
+std::string Program::configuration() const {
+  return app_.config_to_str(false, false);
+}
+
+std::string differences(const nlohmann::json& a, const nlohmann::json& b) {
+  std::string names;
+  const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+  for (const auto& [name, value] : a.items())
+    if (!b.contains(name) || b[name] != value) add(name);
+  for (const auto& [name, value] : b.items())
+    if (!a.contains(name)) add(name);
+  return names;
 }
 
 namespace {

@@ -75,6 +75,8 @@ class Program {
   // Returns the options as parsed, for the provenance of an output. Leaves out file names, since
   // provenance names inputs by their hash, and options that never change a result.
   nlohmann::json parameters() const;
+  // Returns the options that are given, as JSON for --config.
+  std::string configuration() const;
 
  private:
   bool parse(int argc, char** argv);
@@ -94,6 +96,10 @@ class Program {
   std::vector<std::string> not_named_;
   int answer_ = 0;
 };
+
+// Returns the names whose values differ in two objects of options, with commas; empty if all are
+// alike.
+std::string differences(const nlohmann::json& a, const nlohmann::json& b);
 
 // What a file holds that is no container: what its name's ending says, JSON, lines of results (JSON
 // or CSV), or a page.

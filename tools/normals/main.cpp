@@ -16,6 +16,7 @@
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
+#include "tools/common/list_run.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
 #include "tools/common/solid_argument.h"
@@ -206,11 +207,15 @@ int main(int argc, char** argv) {
   Program program("vpm-normals",
                   "Make a cloud with normals from a depth image or another program's cloud");
   Arguments arguments;
+  ListArguments list;
   declare(program.app(), arguments);
+  declare_list(program.app(), list);
   program.show_examples({
       "vpm-normals depth.png -o scene.vpmc --intrinsics 525,525,319.5,239.5 --depth-scale 5000",
       "vpm-normals scene.ply -o points.vpmc   # points of another program",
       "vpm-normals frames -o clouds --intrinsics camera.txt --depth-scale 5000   # a recording",
   });
-  return program.run(argc, argv, [&] { run(program, arguments); });
+  return program.run(argc, argv, [&] {
+    if (!run_list(program, list, {"depth", ".vpmc"})) run(program, arguments);
+  });
 }

@@ -32,6 +32,7 @@
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/given_options.h"
+#include "tools/common/list_run.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
 #include "tools/common/repair_option.h"
@@ -473,7 +474,9 @@ int main(int argc, char** argv) {
   using namespace vpm::tools;
   Program program("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
   Arguments arguments;
+  ListArguments list;
   declare(program.app(), arguments);
+  declare_list(program.app(), list);
   program.show_examples({
       "vpm-pack tool.off -o tool.vpmp --spheres 1000",
       "vpm-pack tool.off --spheres 50 --grow --export tool.yml --link gripper   # for cuRobo",
@@ -483,5 +486,7 @@ int main(int argc, char** argv) {
   });
   std::string holes = "--repair=holes";
   std::vector<char*> words = with_plain_repair(argc, argv, holes);
-  return program.run(argc, words.data(), [&] { run(program, arguments); });
+  return program.run(argc, words.data(), [&] {
+    if (!run_list(program, list, {"mesh", ".vpmp"})) run(program, arguments);
+  });
 }

@@ -15,6 +15,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "tools/common/error_text.h"
+#include "tools/common/program.h"
 
 namespace vpm::tools {
 namespace {
@@ -58,17 +59,6 @@ WholeLines whole_lines(int descriptor, bool is_csv) {
     place += size;
   }
   return lines;
-}
-
-// Returns the names whose values differ, with commas; empty if all are alike.
-std::string differences(const Json& a, const Json& b) {
-  std::string names;
-  const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-  for (const auto& [name, value] : a.items())
-    if (!b.contains(name) || b[name] != value) add(name);
-  for (const auto& [name, value] : b.items())
-    if (!a.contains(name)) add(name);
-  return names;
 }
 
 Json told_in(const std::string& path) {

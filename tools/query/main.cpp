@@ -4,6 +4,7 @@
 #include <ios>
 #include <string>
 
+#include "tools/common/list_run.h"
 #include "tools/query/arguments.h"
 #include "tools/query/mode.h"
 #include "tools/query/pairs.h"
@@ -54,7 +55,9 @@ int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);  // so that standard input is read in blocks
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
+  ListArguments list;
   declare(program.app(), arguments);
+  declare_list(program.app(), list);
   program.show_exit_code(
       10, "with --collides: at a pose there is a collision; with --fail-above: a volume above it");
   program.show_exit_code(11, "the same: at none there is one, but at some nobody can know");
@@ -65,5 +68,7 @@ int main(int argc, char** argv) {
       "vpm-query --urdf robot.urdf --joints joints.jsonl --cloud scene.vpmc",
   });
   program.computes_on_devices();
-  return program.run(argc, argv, [&] { run(program, arguments); });
+  return program.run(argc, argv, [&] {
+    if (!run_list(program, list, {"cloud", ".jsonl"})) run(program, arguments);
+  });
 }
