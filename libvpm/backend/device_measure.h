@@ -40,9 +40,9 @@ class DeviceMeasure {
 
   // Begins to answer poses on the device before a scene's bodies, for a stiffness of N/m^3. Has the
   // contract of Query::run.
-  virtual std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
-                                                     const DevicePoses& poses,
-                                                     double stiffness) = 0;
+  virtual std::shared_ptr<const ResidentAnswers> begin(std::span<const AnyBody> scene,
+                                                       const DevicePoses& poses,
+                                                       double stiffness) = 0;
 
   // Returns what a body gives for a single job.
   BodySum run(const AnyBody& body, const Pose& to_body) {
@@ -81,9 +81,10 @@ class SpreadMeasure : public DeviceMeasure {
            std::span<const BodyJob> jobs, std::span<BodySum> sums) override;
 
   // Leaves poses on a device to the first one.
-  std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
-                                             const DevicePoses& poses, double stiffness) override {
-    return measures_.front()->run(scene, poses, stiffness);
+  std::shared_ptr<const ResidentAnswers> begin(std::span<const AnyBody> scene,
+                                               const DevicePoses& poses,
+                                               double stiffness) override {
+    return measures_.front()->begin(scene, poses, stiffness);
   }
 
   void keep_only(std::span<const AnyBody> scene) override {

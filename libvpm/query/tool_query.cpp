@@ -272,7 +272,7 @@ std::shared_ptr<const ResidentAnswers> ToolQuery::run(std::span<const AnyBody> s
     invalid("poses on a device have " + std::to_string(poses.width) + " numbers each",
             "give 7, or 12 or 16 of a matrix");
   device_->keep_only(scene);
-  return device_->run(scene, poses, options_.stiffness);
+  return device_->begin(scene, poses, options_.stiffness);
 }
 
 ToolQuery& ToolQuery::of_thread(std::size_t thread) {

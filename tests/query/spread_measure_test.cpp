@@ -26,6 +26,10 @@ class EchoMeasure : public DeviceMeasure {
     }
     answered_ += jobs.size();
   }
+  std::shared_ptr<const ResidentAnswers> begin(std::span<const AnyBody>, const DevicePoses&,
+                                               double) override {
+    return nullptr;
+  }
   void keep_only(std::span<const AnyBody>) override {}
   void read_states(std::vector<SphereState>&) override {}
   double flood_microseconds() const override { return 0; }
@@ -40,6 +44,10 @@ class BrokenMeasure : public DeviceMeasure {
   void run(const AnyBody&, std::span<DeviceMeasure* const>, std::span<const BodyJob> jobs,
            std::span<BodySum>) override {
     if (jobs.size() > 1) throw Error(ErrorKind::unavailable, "the device fell off the bus");
+  }
+  std::shared_ptr<const ResidentAnswers> begin(std::span<const AnyBody>, const DevicePoses&,
+                                               double) override {
+    return nullptr;
   }
   void keep_only(std::span<const AnyBody>) override {}
   void read_states(std::vector<SphereState>&) override {}

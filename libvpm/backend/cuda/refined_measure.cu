@@ -80,8 +80,9 @@ class RefinedOnDevice : public DeviceMeasure {
     const CurrentDevice current(device_);
     body.visit([&](const auto& one) { run_on(one, measures, jobs, sums); });
   }
-  std::shared_ptr<const ResidentAnswers> run(std::span<const AnyBody> scene,
-                                             const DevicePoses& poses, double stiffness) override {
+  std::shared_ptr<const ResidentAnswers> begin(std::span<const AnyBody> scene,
+                                               const DevicePoses& poses,
+                                               double stiffness) override {
     const CurrentDevice current(device_);
     require_memory_of(device_, poses);
     if (!batch_) batch_ = std::make_unique<Batch>();
