@@ -368,4 +368,5 @@ def write(folder):
     write_cameras(folder)
     write_poses(folder)
     write_recordings(folder)
+    write_all(folder, {"arm.urdf": (pathlib.Path(__file__).parent / "inputs/arm.urdf").read_bytes()})
     write_all(folder, {f"start{k}": start + b" " * 40 for k, start in enumerate(STARTS)})

@@ -39,6 +39,7 @@ UNTRIED = [
     ]),
     ("a help text, a command, or the name of an option that takes the place of another word", [
         "tool. Given several times there, a path for each --tool",
+        "input. Or a packing or tool model, whose spheres are written by --export", "chosen by --urdf",
         "Measure accuracy and speed; write JSON and CSV", "--meshes MESHES", "--data DATA",
         "depend on the machine's speed. Wins over --max-error and --for-scene",
         "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames",
@@ -78,6 +79,15 @@ UNTRIED = [
         "give m, cm, mm, um, in or ft", "is a mesh: give the folder of all parts, or a description (assembly.json)", 'write {"id": "',
         "--unit mm", "another --unit",
     ]),
+    ("stands in tests/robot, of URDF and SRDF files", [
+        "give the SRDF of this robot", "' is seen but has no collision geometry, and is left out: give it a <collision> with the geometry of its <visual>",
+        "make it fixed, or a chain of prismatic and revolute joints", 'write <axis xyz="0 0 1"/>', "give it one",
+        'write scale="1 1 1", or "0.001 0.001 0.001" for millimetres', "has a negative scale, and is mirrored; if that is not meant, write it without the sign",
+        "fetch it, and write its path or package://PACKAGE/PATH", "correct the name in <mimic>", "let one of them have a value of its own",
+        "give links a <collision> with the geometry of their <visual>", "build it where that is installed (Debian: liburdfdom-dev)",
+        "write an --export, or call it by a name without /",
+    ]),
+    ("no solid is so narrow that few spheres fit", ["give --spheres"]),
     ("two runs at once write one file", ["wait for its end, or name another output"]),
     ("an answer of vpm-query --serve: cases/serve.t", [
         'give "cloud" beside it', 'give "cloud", here or in a request before', 'leave "camera_pose" out',
@@ -180,7 +190,7 @@ def row_faults(tools, command, advice, cure, volume=None, tolerance=1e-3):
         return
     if cure is None:
         return
-    cure = re.sub(r"\{(\d)\}", lambda place: found[int(place[1]) + 1], cure)
+    cure = re.sub(r"\{(\d+)\}", lambda place: found[int(place[1]) + 1], cure)
     done = tools.run(cure)
     if NOT_BUILT.search(done.stderr):
         tools.lacks_formats = True

@@ -13,6 +13,7 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
+#include "libvpm/packing/outer_cover.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/peak_memory.h"
@@ -84,6 +85,7 @@ class Packings {
     compare();
     grow_together();
     count_what_is_needed();
+    hold_all();
     scale_up();
     refine_mesh();
     fill_smooth_solids();
@@ -203,6 +205,40 @@ class Packings {
       }
     }
     progress(0.7);
+  }
+
+  // Compares spheres in a solid with those that hold all of it, as the fits of others are reported.
+  void hold_all() {
+    report_.summary +=
+        "\n| shape | spheres | method | covered | outside of the solid, of its volume | reach "
+        "beyond it, of "
+        "its longest side | proven | CPU s |\n|---|---|---|---|---|---|---|---|\n";
+    for (const Shape& shape : shapes_)
+      for (const std::size_t n : {std::size_t{10}, std::size_t{100}}) {
+        add_fit(shape, "greedy", greedy(shape, n), {});
+        std::vector<Sphere> spheres;
+        const Cost cost = cost_of([&] { spheres = cover(shape.solid, n, &shape.enclosure); });
+        add_fit(shape, "outer", spheres, cost);
+      }
+  }
+
+  void add_fit(const Shape& shape, const std::string& method, const std::vector<Sphere>& spheres,
+               const Cost& cost) {
+    const bool is_outer = method == "outer";
+    const CoverShares shares = cover_shares(shape.solid, spheres, &shape.enclosure);
+    const Certificate certificate = certify(shape.solid, spheres, &shape.enclosure);
+    const bool holds =
+        is_outer ? certify_cover(shape.solid, spheres, &shape.enclosure).holds : certificate.holds;
+    const double longest = certificate.tolerance / kCertificateTolerance;
+    const double beyond = std::max(0.0, certificate.max_protrusion) / longest;
+    add("fit", shape.name, method, spheres.size(), shares.covered, cost);
+    report_.results.back()["protrusion"] = shares.protruding;
+    report_.results.back()["max_protrusion"] = beyond;
+    report_.results.back()["certified"] = holds;
+    report_.summary += format("| %s | %zu | %s | %.4f | %.4f | %.4f | %s | %.2f |\n",
+                              shape.name.c_str(), spheres.size(), method.c_str(), shares.covered,
+                              shares.protruding, beyond, holds ? "yes" : "NO", cost.cpu_seconds);
+    if (!holds) report_.failure = "a packing or cover does not hold its certificate";
   }
 
   // Finds the fewest spheres that cover a fraction of the volume, greedy and grown.

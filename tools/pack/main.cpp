@@ -201,7 +201,8 @@ enum class Job { pack, outer, ready, robot };
 
 Job job_of(const Arguments& a) {
   if (!a.urdf.empty()) return Job::robot;
-  if (file::is_container(a.mesh)) return Job::ready;
+  // With --output it is meant as a mesh, and the reader of meshes says what it is ready for.
+  if (file::is_container(a.mesh) && a.output.empty()) return Job::ready;
   return a.outer ? Job::outer : Job::pack;
 }
 
@@ -219,8 +220,8 @@ void check_options(const CLI::App& app, Job job) {
       {Job::outer, {"--outer", {"--level", "--robot-spheres", "--package-path", "--grow"}}},
       {Job::ready,
        {"a packing or tool model",
-        {"--outer", "--robot-spheres", "--package-path", "--grow", "--spheres", "--output",
-         "--report", "--node", "--scale", "--weld", "--repair", "--max-hole"}}},
+        {"--outer", "--robot-spheres", "--package-path", "--grow", "--spheres", "--report",
+         "--node", "--scale", "--weld", "--repair", "--max-hole"}}},
       {Job::robot, {"--urdf", {"--level", "--node", "--scale", "--link"}}}};
   auto& [with, options] = rules.at(job);
   if (job != Job::pack) options.insert(options.end(), of_packing.begin(), of_packing.end());
@@ -231,10 +232,11 @@ void check_options(const CLI::App& app, Job job) {
 }
 
 void check_outputs(const Arguments& a, const CommonOptions& common, Job job) {
-  std::vector<OutputFile> outputs{{"--report", a.report, std::nullopt, OutputForm::json},
-                                  {"--view", a.view, std::nullopt, OutputForm::page}};
+  std::vector<OutputFile> outputs;
   if (job != Job::robot) outputs.push_back({"--output", a.output, file::Kind::packing});
+  outputs.push_back({"--report", a.report, std::nullopt, OutputForm::json});
   for (const std::string& path : a.exports) outputs.push_back({"--export", path, std::nullopt});
+  outputs.push_back({"--view", a.view, std::nullopt, OutputForm::page});
   check_files({a.mesh, a.urdf, a.for_scene}, outputs, common);
 }
 
@@ -480,8 +482,6 @@ int main(int argc, char** argv) {
   program.show_examples({
       "vpm-pack tool.off -o tool.vpmp --spheres 1000",
       "vpm-pack tool.off --spheres 50 --grow --export tool.yml --link gripper   # for cuRobo",
-      "vpm-pack --urdf robot.urdf --robot-spheres 60 --outer --export robot.yml --export "
-      "robot.srdf",
       "vpm-pack tool.off -o open.vpmp --scale 0.001 --repair voxel   # millimetres, open",
   });
   std::string holes = "--repair=holes";

@@ -77,12 +77,12 @@ void run_outer(const Program& program, const Arguments& a, const CheckedSolid& c
   }
   write_exports(a, fit.spheres);
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "%zu spheres hold all of the solid, proven in %zu cells; %.3g %% of its volume lies "
-      "in them outside of it, and none reaches further than %.3g mm out",
-      spheres.size(), fit.certificate.cells, 100 * quality["protrusion"].get<double>(),
-      1000 * quality["max_protrusion"].get<double>());
+  std::snprintf(text, sizeof text,
+                "%zu sphere%s all of the solid, proven in %zu cells; %.3g %% of its volume lies "
+                "in them outside of it, and none reaches further than %.3g mm out",
+                spheres.size(), spheres.size() == 1 ? " holds" : "s hold", fit.certificate.cells,
+                100 * quality["protrusion"].get<double>(),
+                1000 * quality["max_protrusion"].get<double>());
   program.note(text);
 }
 

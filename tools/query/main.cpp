@@ -65,7 +65,6 @@ int main(int argc, char** argv) {
       "vpm-query --tool tool.vpmg --cloud scene.vpmc --pose 0,0,0.9,0,0,0,1",
       "vpm-query --tool tool.off --cloud scene.vpmc --poses poses.jsonl -o results.csv",
       "vpm-query --tool tool.vpmg --frames clouds --poses path.txt -o steps.jsonl",
-      "vpm-query --urdf robot.urdf --joints joints.jsonl --cloud scene.vpmc",
   });
   program.computes_on_devices();
   return program.run(argc, argv, [&] {

@@ -173,7 +173,7 @@ $ vpm-pack cube.off -o x.vpmp --report= --quiet; ls ./--quiet 2>&1 | wc -l
 2> vpm-pack: error: --report: its value is empty; give one, or leave the option out (see vpm-pack --help)
 [2]
 $ vpm-pack cube.off --spheres 5 -o x.vpmp --link part
-2> vpm-pack: error: --link is a name in .yml, .urdf and .srdf; give --export with one of these
+2> vpm-pack: error: --link is a name in .yml, .xrdf, .urdf and .srdf; give --export with one of these
 [2]
 
 # Two outputs do not share a stream, however it is named; notes do not go into an output file if standard error is

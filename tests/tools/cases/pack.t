@@ -64,7 +64,7 @@ $ vpm-pack cube.off
 2> vpm-pack: error: nothing would be written: give -o OUT.vpmp, --export, --report or --view
 [2]
 $ vpm-pack cube.off --export cube.xyz
-2> vpm-pack: error: export: the name 'cube.xyz' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .urdf or .srdf
+2> vpm-pack: error: export: the name 'cube.xyz' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .xrdf, .urdf or .srdf
 [2]
 $ vpm-pack cube.off --spheres 0 -o zero.vpmp
 2> vpm-pack: error: --spheres: 0 is not a whole number from 1 to 4294967294 (see vpm-pack --help)

@@ -146,7 +146,7 @@ $ vpm-query --tool cube.vpmg --solid cube.off --pose 0,0,0,0,0,0,1 --fail-above 
 2> vpm-query: error: --unit does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --pairs - --poses - < fit.json
-2> vpm-query: error: only one of --tool, --cloud, --pairs and --poses can be standard input
+2> vpm-query: error: only one of --tool, --cloud, --pairs, --poses and --joints can be standard input
 [2]
 
 # Sizes in the wrong unit draw one warning, with the cure; a tiny part beside others is right.

@@ -28,7 +28,7 @@ $ for o in '--deadline-us 100' '--coherent' '--spheres-out s.ply'; do vpm-query 
 2> vpm-query: error: --spheres-out does not go with several tools in a cloud, chosen by more than one --tool: leave it out
 [2]
 $ vpm-query --tool - --tool - --cloud wall.vpmc --poses path.txt
-2> vpm-query: error: only one of --tool, --cloud, --pairs and --poses can be standard input
+2> vpm-query: error: only one of --tool, --cloud, --pairs, --poses and --joints can be standard input
 [2]
 $ : > empty.txt && vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses empty.txt
 2> vpm-query: error: empty.txt: * (glob)
