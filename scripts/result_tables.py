@@ -357,6 +357,14 @@ def threads(report):
     return table(["threads, each on a core"] + [head for name in kinds.values() for head in (f"{name}, a second", "of N times one thread's")], rows)
 
 
+def over_a_list(report):
+    of = {(r["job"], r["jobs"]): r for r in report["results"]}
+    counts = sorted({count for _, count in of})
+    return table(["frames a second; slowest and fastest round"] + [f"{n} job{'s' if n > 1 else ''}, each on a core" for n in counts],
+                 [[job] + ["{:.0f} ({:.0f} to {:.0f})".format(of[job, n]["frames_per_second"], *of[job, n]["range"]) for n in counts]
+                  for job in dict.fromkeys(job for job, _ in of)])
+
+
 def fuzz(report):
     rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
             for name, t in report["targets"].items()]
@@ -377,7 +385,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "list": (over_a_list, "list"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
              "fuzz": (fuzz, "fuzz")}}
 
 
