@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <memory>
@@ -182,6 +183,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& job) {
     set_thread_count(common_.threads);
     job();
     flush_output();
+    show_page();
     return answer_;
   } catch (const CLI::Success& asked) {  // --help, --version
     const int code = app_.exit(asked);
@@ -204,6 +206,27 @@ int Program::run(int argc, char** argv, const std::function<void()>& job) {
   } catch (const std::exception& fault) {
     return fail(ErrorKind::refused, fault.what());
   }
+}
+
+// Opens the page of --view in a browser for somebody who sits before a terminal and a display. What
+// the browser says is nobody's business, and without one nothing happens.
+void Program::show_page() const {
+  const CLI::Option* const view = app_.get_option_no_throw("--view");
+  const bool has_display =
+      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (view == nullptr || view->empty() || common_.quiet || !has_display ||
+      ::isatty(STDERR_FILENO) == 0)
+    return;
+  const std::string page = view->results().back();
+  if (file::descriptor_of(page) || ::access(page.c_str(), R_OK) != 0) return;
+  std::signal(SIGHUP, SIG_IGN);  // of a terminal that closes now
+  const pid_t browser = ::fork();
+  if (browser != 0) return;
+  const int nothing = ::open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
+  ::setsid();  // the browser does not close with the terminal
+  ::execlp("xdg-open", "xdg-open", page.c_str(), nullptr);
+  ::_exit(1);
 }
 
 // Returns the file of --config, as it was given.

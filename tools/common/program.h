@@ -81,6 +81,7 @@ class Program {
  private:
   bool parse(int argc, char** argv);
   std::string config_name() const;
+  void show_page() const;
   void declare_common();
   void declare_configurations();
   void refuse_values_of_flags(int argc, char** argv) const;
