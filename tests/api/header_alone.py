@@ -25,7 +25,9 @@ if re.search(r"\bError\((?:refused|invalid_argument|unavailable|cannot_write)\)"
 if example:
     code = "\n  ".join(re.sub(r"\s*//.*", "", line) for line in example)
     free = {"pose": "const vpm::Pose& pose", "camera_to_world": "const vpm::Pose& camera_to_world",
-            "intrinsics": "const vpm::Intrinsics& intrinsics", "camera": "const auto& camera", "query": "vpm::Query& query"}
+            "intrinsics": "const vpm::Intrinsics& intrinsics", "camera": "const auto& camera", "query": "vpm::Query& query",
+            "scene": "const vpm::Scene& scene", "numbers": "const double* numbers", "count": "std::size_t count",
+            "stream": "void* stream"}
     declared = set(re.findall(r"\bvpm::\w+ (\w+)", code))
     parameters = [parameter for name, parameter in free.items()
                   if re.search(rf"(?<![\w.:]){name}\b", code) and name not in declared]

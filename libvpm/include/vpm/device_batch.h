@@ -1,11 +1,12 @@
 // Poses and answers that stay in the memory of a CUDA device, for programs that compute on it.
 //
-//   vpm::Query query(tool, {.device = {vpm::Device::Kind::cuda, 0}});
-//   const vpm::DeviceResults results = query.run(scene, vpm::DevicePoses{poses, count, 7, stream});
-//   results.wait_in(stream);                     // what follows in the stream sees results.rows()
+//   const vpm::DevicePoses poses{numbers, count, 7, stream};        // 7 numbers for each
+//   const vpm::DeviceResults answers = query.run(scene, poses);     // returns at once
+//   answers.wait_in(stream);       // what follows in the stream sees answers.rows(); <vpm/query.h>
 #pragma once
 
 #include <vpm/device.h>
+#include <vpm/error.h>
 #include <vpm/export.h>
 #include <vpm/pose.h>
 #include <vpm/query_types.h>
