@@ -158,7 +158,7 @@ void bind_device_arrays(py::module_& module) {
                              "(N,) of spheres that the surface cuts.")
       .def_property_readonly("inside", column(&DeviceResult::inside, 0, kCount),
                              "(N,) of spheres behind the surface that count.");
-  using LockedQuery = Locked<Query>;
+  using LockedQuery = ToolQuery<Query>;
   py::class_<LockedQuery> query = module.attr("Query");
   query.def(
       "run_batch",
