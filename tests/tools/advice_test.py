@@ -57,7 +57,8 @@ UNTRIED = [
         "an image has pixels: give its size", "write to metres()", "make it of the depth image", "write to counts()", "repair the mesh", "use the one that it was moved to",
         "leave `deadline_seconds` out, or ask pose by pose", "give a number above 0, in N/m^3",
         "make both with `with_force`, or ask without", "give a closed mesh that is oriented outward",
-        "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
+        "copy them there, or ask a query on their device", "give it `device` cuda", "copy the poses to the host",
+        "give 7, or 12 or 16 of a matrix", "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
     ]),
     ("stands in a transcript: cases/solids.t, resume.t, several_tools.t", [
         "leave that choice out, or add a cloud", "make it again by vpm-graph, without --no-surface",
