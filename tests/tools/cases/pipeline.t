@@ -61,6 +61,7 @@ $ vpm-query --tool missing.vpmg --cloud wall.vpmc --poses path.txt
 $ ls
 again.vpmc
 again.vpmg
+arm.urdf
 bench
 bench.json
 block.off
