@@ -507,7 +507,7 @@ def test_views_of_nothing_are_refused(drawn, tool, scene):
 
 
 def names_of_stub():
-    """Returns the names of the type stubs: functions, classes, and {class: members}."""
+    """Returns the public names of the type stubs: functions, classes, and {class: members}."""
     tree = ast.parse((pathlib.Path(vpm.__file__).parent / "__init__.pyi").read_text())
     names = {}
     for node in tree.body:
@@ -515,7 +515,7 @@ def names_of_stub():
             names[node.name] = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
         elif isinstance(node, ast.FunctionDef):
             names[node.name] = None
-    return names
+    return {name: members for name, members in names.items() if not name.startswith("_")}
 
 
 def test_stubs_name_what_the_module_has():
