@@ -44,6 +44,7 @@ ImportOptions options_of(const ImportParameters& parameters) {
   options.axes = parameters.axes;
   options.to_world = parameters.camera_pose;
   options.flip = parameters.flip;
+  if (!parameters.orient.empty()) options.orient = orientation_from_text(parameters.orient);
   options.normals = parameters.normals;
   return options;
 }

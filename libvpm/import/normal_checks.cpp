@@ -156,9 +156,7 @@ Remarks contradictions(const Cloud& cloud, const std::string& name) {
                            std::to_string(cloud.size()) + " normals (" +
                            percent_text(found.size(), cloud.size()) +
                            ") face opposite ways to those about them, " + places_text(cloud, found);
-  const std::string cure =
-      "all must point into free space: `orient` neighbours, or the place of "
-      "the sensor, turns them";
+  const std::string cure = "turn them by `orient` neighbours, or by the place of the sensor";
   if (static_cast<double>(found.size()) > kMostContradicting * static_cast<double>(cloud.size()))
     refuse(what, name, cure);
   return {{true, what + "; " + cure}};

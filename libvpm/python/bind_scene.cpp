@@ -45,6 +45,7 @@ ImportParameters parameters_of(const py::kwargs& given) {
   made.along_ray = of("along_ray", made.along_ray);
   made.channel = of("channel", made.channel);
   made.flip = of("flip", made.flip);
+  made.orient = of("orient", made.orient);
   made.normals =
       normals_of(of("method", std::string("inverse-depth")), of("window", made.normals.window),
                  of("edge_gate", made.normals.edge_gate));
@@ -60,7 +61,8 @@ constexpr const char* kImportArguments =
     "invalid: values that mean \"not measured\"; usual_invalid: 0, 65535 and the like do too.\n"
     "range: (nearest, farthest), m; other depths count as not measured.\n"
     "along_ray: values are distances along the ray. channel: of an OpenEXR image.\n"
-    "flip: turns the normals of points without camera.\n"
+    "flip: turns the normals of points without camera. orient: turns those that face away from a "
+    "place, \"x,y,z\", or with \"neighbours\" those that disagree with others.\n"
     "method, window, edge_gate: how normals are estimated (\"inverse-depth\" or \"pca\").\n\n"
     "Warnings are vpm.SetupWarning, notes go to the logger \"vpm\". Raises RefusedError, naming "
     "the defect, and ArgumentError for arguments out of range. Thread-safe.";

@@ -603,3 +603,17 @@ def test_poses_and_answers_stay_on_a_gpu(tool, scene):
     assert volume.sum().item() == total                    # arrays hold the memory that they lie in
     mirrored = torch.diag(torch.tensor([-1.0, 1, 1, 1], dtype=torch.float64)).repeat(2, 1, 1).cuda()
     assert torch.isnan(torch.from_dlpack(query.run_batch(scene, mirrored).volume)).all()
+
+
+def test_normals_of_points_are_turned_by_their_neighbours(tmp_path):
+    places = [(x / 20, y / 20, 1.0) for x in range(20) for y in range(20)]
+    lines = [f"{x} {y} {z} 0 0 {1 if k % 3 == 0 else -1}" for k, (x, y, z) in enumerate(places)]
+    header = ["ply", "format ascii 1.0", f"element vertex {len(lines)}"]
+    header += [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
+    path = tmp_path / "wall.ply"
+    path.write_text("\n".join([*header, "end_header", *lines]) + "\n")
+    with pytest.raises(vpm.RefusedError, match="orient"):
+        vpm.import_cloud(path)
+    assert len(vpm.import_cloud(path, orient="0.5,0.5,0")) == 400
+    with pytest.raises(vpm.ArgumentError, match="neighbours"):
+        vpm.import_cloud(path, orient="0.5,0.5")

@@ -58,7 +58,7 @@ SCANS = [
     (f"wall.png {CAMERA} --flip", "--flip is not used", f"wall.png {CAMERA}", WALL),
     (f"wall.png {CAMERA} --orient neighbours", "--orient is not used", f"wall.png {CAMERA}", WALL),
     ("points.ply --orient 1,2", "--orient is (neighbours), or the place of the sensor as x,y,z", "points.ply --orient {0}", POINTS),
-    ("turned.ply", r"(--orient neighbours), or the place", "turned.ply {0}", POINTS),
+    ("turned.ply", r"(--orient neighbours), or by the place", "turned.ply {0}", POINTS),
     ("away.pcd", r"give (--flip) to turn them", "away.pcd {0}", POINTS),
     ("gl.pcd", r"give (--axes \w+)", "gl.pcd {0}", WALL),
     ("ros.pcd", r"give (--axes \w+)", "ros.pcd {0}", WALL),

@@ -41,6 +41,9 @@ struct ImportParameters {
   std::string channel = {};  // depth channel of an OpenEXR image; if empty, its name tells
 
   bool flip = false;  // turns the normals of points that have some and no camera
+  // Turns those of them, after `flip`, that face away from a place, "x,y,z" in the world's frame,
+  // or with "neighbours" those that disagree with the normals about them; if empty, none.
+  std::string orient = {};
   NormalOptions normals = {};
 };
 

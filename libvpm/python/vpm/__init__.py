@@ -63,12 +63,12 @@ __all__ = [
 
 
 def import_cloud(path, *, intrinsics=None, camera_pose=None, axes="opencv", depth_scale=None, decode="", invalid=(),
-                 usual_invalid=True, range=None, along_ray=False, channel="", flip=False, method="inverse-depth", window=7,
-                 edge_gate=0.02):
+                 usual_invalid=True, range=None, along_ray=False, channel="", flip=False, orient="", method="inverse-depth",
+                 window=7, edge_gate=0.02):
     return _vpm.import_cloud(_os.fspath(path), intrinsics=intrinsics, camera_pose=camera_pose, axes=axes,
                              depth_scale=depth_scale, decode=decode, invalid=list(invalid), usual_invalid=usual_invalid,
-                             range=range, along_ray=along_ray, channel=channel, flip=flip, method=method, window=window,
-                             edge_gate=edge_gate)
+                             range=range, along_ray=along_ray, channel=channel, flip=flip, orient=orient, method=method,
+                             window=window, edge_gate=edge_gate)
 
 
 def import_depth(image, *, intrinsics, camera_pose=None, axes="opencv", depth_scale=None, decode="", invalid=(),

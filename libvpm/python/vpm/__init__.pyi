@@ -358,8 +358,8 @@ def make_tool(mesh: Any, *, spheres: int = 1000, levels: Sequence[int] = (), cal
 def import_cloud(path: _Path, *, intrinsics: ArrayLike | None = None, camera_pose: ArrayLike | None = None,
                  axes: str = "opencv", depth_scale: float | None = None, decode: str = "", invalid: Sequence[float] = (),
                  usual_invalid: bool = True, range: tuple[float, float] | None = None, along_ray: bool = False,
-                 channel: str = "", flip: bool = False, method: str = "inverse-depth", window: int = 7,
-                 edge_gate: float = 0.02) -> PointCloud: ...
+                 channel: str = "", flip: bool = False, orient: str = "", method: str = "inverse-depth",
+                 window: int = 7, edge_gate: float = 0.02) -> PointCloud: ...
 def import_depth(image: NDArray[Any], *, intrinsics: ArrayLike, camera_pose: ArrayLike | None = None, axes: str = "opencv",
                  depth_scale: float | None = None, decode: str = "", invalid: Sequence[float] = (),
                  usual_invalid: bool = True, range: tuple[float, float] | None = None, along_ray: bool = False,

@@ -60,7 +60,7 @@ $ head='ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty floa
 # Points that are read, with what is wrong about them
 $ points() { python3 -c 'import sys; n = range(20); turn = sys.argv[1]; far = float(sys.argv[2]); print("ply", "format ascii 1.0", "element vertex 400", *("property float " + p for p in "x y z nx ny nz".split()), "end_header", *(f"{i / 50 + far if (i, k) == (0, 0) else i / 50} {k / 50} 1 0 0 {dict(random=1 if (i * 7 + k * 3) % 5 < 2 else -1, none=0 if i == k else -1).get(turn, -1)}" for i in n for k in n), sep="\n")' "$@"; }; points random 0 > random.ply; points none 0 > none.ply; points toward 1e7 > far.ply
 $ vpm-normals random.ply -o random.vpmc
-2> vpm-normals: error: random.ply: 400 of its 400 normals (100 %) face opposite ways to those about them, the first at (0, 0, 1), (0, 0.02, 1), (0, 0.04, 1); all must point into free space: --orient neighbours, or the place of the sensor, turns them
+2> vpm-normals: error: random.ply: 400 of its 400 normals (100 %) face opposite ways to those about them, the first at (0, 0, 1), (0, 0.02, 1), (0, 0.04, 1); turn them by --orient neighbours, or by the place of the sensor
 [1]
 $ vpm-normals none.ply -o none.vpmc
 2> vpm-normals: note: none.ply: 20 points have no normal and are left out
