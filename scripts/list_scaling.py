@@ -7,17 +7,13 @@ BIN is the folder of the programs and of make-example, COMMIT what they were bui
 of 640 x 480 pixels; in each, the demo's tool of 1000 spheres is asked 100 poses of its path. "again" is the same command once all is
 done, which reads and compares all of it. Each figure is the median of three rounds, which measure all in turn.
 """
-import json
 import os
 import pathlib
 import shutil
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
 
-from thread_scaling import processor
+from thread_scaling import report
 
 ROUNDS, FRAMES, POSES = 3, 128, 100
 
@@ -57,21 +53,5 @@ def measured(run):
             for (name, jobs), of in rates.items()]
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    programs = str(pathlib.Path(sys.argv[1]).resolve())
-    environment = dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}")
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        run = lambda *command: subprocess.run([str(word) for word in command], check=True, env=environment, stdout=sys.stderr)
-        make_inputs(run)
-        results = measured(run)
-        os.chdir("/")
-    json.dump({"command": "scripts/list_scaling.py BIN COMMIT", "commit": sys.argv[2],
-               "machine": {"cores": len(os.sched_getaffinity(0)), "processor": processor()}, "results": results}, sys.stdout, indent=1)
-    print()
-
-
 if __name__ == "__main__":
-    main()
+    report("list_scaling.py", __doc__, make_inputs, measured)

@@ -61,9 +61,10 @@ def processor():
     return next(line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
 
 
-def main():
+def report(script, usage, make_inputs, measured):
+    """Runs `measured` on the inputs in a new folder, with the programs of BIN, and prints its rows with command, commit and machine."""
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        sys.exit(usage)
     programs = str(pathlib.Path(sys.argv[1]).resolve())
     environment = dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}")
     with tempfile.TemporaryDirectory() as folder:
@@ -72,10 +73,10 @@ def main():
         make_inputs(run)
         results = list(measured(run))
         os.chdir("/")
-    json.dump({"command": "scripts/thread_scaling.py BIN COMMIT", "commit": sys.argv[2],
+    json.dump({"command": f"scripts/{script} BIN COMMIT", "commit": sys.argv[2],
                "machine": {"cores": len(os.sched_getaffinity(0)), "processor": processor()}, "results": results}, sys.stdout, indent=1)
     print()
 
 
 if __name__ == "__main__":
-    main()
+    report("thread_scaling.py", __doc__, make_inputs, measured)

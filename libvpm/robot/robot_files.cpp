@@ -17,7 +17,7 @@ Pair ordered(std::size_t a, std::size_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-// Adds the pairs of each link and the next ones above it that have shapes.
+// Adds, for each link but the root, its pair with the nearest link above it that has shapes.
 void add_adjacent(const Robot& robot, std::set<Pair>& pairs) {
   for (const RobotJoint& joint : robot.joints) {
     std::size_t above = joint.parent;

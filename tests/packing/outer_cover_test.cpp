@@ -131,7 +131,7 @@ TEST(OuterCover, SharesAreThoseOfGeometry) {
   const CoverShares about = cover_shares(cube, {{{}, radius}, {{}, 0.3}});
   EXPECT_NEAR(about.covered, 1, 1e-4);
   EXPECT_NEAR(about.protruding, 4. / 3 * kPi * radius * radius * radius - 1, 1e-3);
-  // Half of each of two balls that lie on opposite faces.
+  // Two balls have their middles on opposite faces of the cube: half of each lies in it.
   const CoverShares halves = cover_shares(cube, {{{0.5, 0, 0}, 0.4}, {{-0.5, 0, 0}, 0.4}});
   EXPECT_NEAR(halves.covered, 8 * kPiOver6 * 0.064, 1e-4);
   EXPECT_NEAR(halves.protruding, halves.covered, 1e-4);

@@ -58,6 +58,22 @@ nlohmann::ordered_json collision_line(std::size_t pose_index, const std::string&
   return line;
 }
 
+nlohmann::ordered_json as_json(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+void add_measures(nlohmann::ordered_json& line, const Result& r) {
+  line["volume"] = r.volume;
+  line["volume_fraction"] = r.volume_fraction;
+  if (r.visibility) {
+    line["seen_free"] = r.visibility->seen_free;
+    line["unseen"] = r.visibility->unseen;
+    line["out_of_view"] = r.visibility->out_of_view;
+  }
+  line["force"] = as_json(r.wrench.force);
+  line["torque"] = as_json(r.wrench.torque);
+}
+
 nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id, const Result& r,
                                    std::uint32_t level, Measure measure, LevelReason level_reason,
                                    const std::optional<StepOfReplay>& replay,
@@ -68,15 +84,7 @@ nlohmann::ordered_json result_line(std::size_t pose_index, const std::string& id
     line["time"] = replay->time;
     line["frame"] = replay->frame;
   }
-  line["volume"] = r.volume;
-  line["volume_fraction"] = r.volume_fraction;
-  if (r.visibility) {
-    line["seen_free"] = r.visibility->seen_free;
-    line["unseen"] = r.visibility->unseen;
-    line["out_of_view"] = r.visibility->out_of_view;
-  }
-  line["force"] = {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z};
-  line["torque"] = {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z};
+  add_measures(line, r);
   line["boundary"] = r.boundary;
   line["inside"] = r.inside;
   if (r.points) line["points"] = *r.points;

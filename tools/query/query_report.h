@@ -27,6 +27,10 @@ struct AskedPose {
   std::vector<Pose> solids;  // of each --solid; none: where the options say
 };
 
+nlohmann::ordered_json as_json(Vec3 v);
+// Adds volume, what is seen, force and torque, which lines tell alike of a tool and of each link.
+void add_measures(nlohmann::ordered_json& line, const Result& result);
+
 // Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the
 // device or the clock, unless a deadline chose the level. `level_reason` is left out if
 // no option chose the level; `tool` is the tool's index among several, and `id` that of the pose.

@@ -17,6 +17,7 @@
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/mode.h"
+#include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
 #include "tools/query/robot_joints.h"
 
@@ -26,11 +27,7 @@ namespace {
 // Links are packed with as many spheres as a mesh of --tool is; solids of a scene ask for none.
 constexpr unsigned kSpheres = 1000, kSpheresForSolids = 1;
 
-nlohmann::ordered_json as_json(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
-nlohmann::ordered_json as_json(const Pose& pose) {
+nlohmann::ordered_json seven_of(const Pose& pose) {
   const auto& [x, y, z] = pose.translation;
   const Quaternion q = quaternion_from_rotation(pose.rotation);
   return {x, y, z, q.x, q.y, q.z, q.w};
@@ -120,16 +117,7 @@ class SceneOfLinks {
     for (std::size_t k = 0; k < tools.size(); ++k) {
       const Result result = query_.run(scene_.scene(), poses[k], k);
       scene_.see(poses[k], k, result);
-      nlohmann::ordered_json& part = line["links"][k];
-      part["volume"] = result.volume;
-      part["volume_fraction"] = result.volume_fraction;
-      if (result.visibility) {
-        part["seen_free"] = result.visibility->seen_free;
-        part["unseen"] = result.visibility->unseen;
-        part["out_of_view"] = result.visibility->out_of_view;
-      }
-      part["force"] = as_json(result.wrench.force);
-      part["torque"] = as_json(result.wrench.torque);
+      add_measures(line["links"][k], result);
       volume += result.volume;
       force += result.wrench.force;
       torque +=
@@ -251,7 +239,7 @@ void run_robot(Program& program, const Arguments& a) {
     std::vector<Pose> of_links;
     for (std::size_t k = 0; k < robot.links().size(); ++k) {
       of_links.push_back(poses[robot.links()[k]]);
-      line["links"].push_back({{"link", robot.name(k)}, {"pose", as_json(of_links.back())}});
+      line["links"].push_back({{"link", robot.name(k)}, {"pose", seven_of(of_links.back())}});
     }
     if (scene) scene->ask(robot.tools(), of_links, line);
     robot.add_shared(poses, line);

@@ -30,8 +30,9 @@ struct DevicePoses {
   void* stream = nullptr;
 };
 
-// Answer to one of them, as Result has it. A pose that Query::run refuses has NaN in all its
-// fractions, volumes and vectors, and 0 spheres. What a camera knows is NaN where Result has none.
+// Answer to one pose of DevicePoses, as Result has it. A pose that Query::run refuses has NaN in
+// all its fractions, volumes and vectors, and 0 spheres. What a camera knows is NaN where Result
+// has none.
 struct DeviceResult {
   double volume, volume_fraction;
   Vec3 force, torque;
