@@ -42,6 +42,9 @@ fill() {
   fi
   chmod 755 "$root"  # as on a machine: other users than root may enter
   mount -t proc proc "$root/proc" || cannot "$root/proc cannot be mounted"
+  # Pseudo-terminals, for what asks whether somebody sits before it; its tests are skipped without.
+  mkdir -p "$root/dev/pts"
+  if mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"; then ln -sf pts/ptmx "$root/dev/ptmx"; fi
   # Packages unpack faster without syncing, for the root does not outlive this script, and without what nobody reads here
   # but vpm's own examples, which debian_packages.sh builds.
   printf '%s\n' force-unsafe-io path-exclude=/usr/share/{doc,man,locale}/'*' 'path-include=/usr/share/doc/vpm/*' >"$root/etc/dpkg/dpkg.cfg.d/fast"

@@ -212,8 +212,11 @@ int Program::run(int argc, char** argv, const std::function<void()>& job) {
 // the browser says is nobody's business, and without one nothing happens.
 void Program::show_page() const {
   const CLI::Option* const view = app_.get_option_no_throw("--view");
-  const bool has_display =
-      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  const auto names_display = [](const char* variable) {
+    const char* const display = std::getenv(variable);
+    return display != nullptr && *display != '\0';
+  };
+  const bool has_display = names_display("DISPLAY") || names_display("WAYLAND_DISPLAY");
   if (view == nullptr || view->empty() || common_.quiet || !has_display ||
       ::isatty(STDERR_FILENO) == 0)
     return;

@@ -203,8 +203,3 @@ frame.vpmc
 link
 out.txt
 private.txt
-
-# The page of --view is opened in a browser for somebody who sits before a terminal with a display, and only then.
-$ mkdir bin && printf '#!/bin/sh\necho "$1" >> opened\n' > bin/xdg-open && chmod +x bin/xdg-open && echo 'PATH=$PWD/bin:$PATH vpm-normals $SOURCE/tests/tools/inputs/wall.png --view "$@" --intrinsics 60,60,31.5,23.5' > look.sh
-$ unset WAYLAND_DISPLAY; for display in '' :9; do DISPLAY=$display bash look.sh pipe$display.html 2>&-; done; sh -c 'unset DISPLAY; script -qec "bash look.sh none.html" /dev/null' > said; DISPLAY=:9 script -qec 'bash look.sh quiet.html --quiet' /dev/null > said; DISPLAY=:9 script -qec 'bash look.sh seen.html' /dev/null > said; for k in $(seq 200); do [ -s opened ] && break; sleep 0.02; done; cat opened
-seen.html
