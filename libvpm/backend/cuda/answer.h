@@ -17,13 +17,9 @@ struct Answer {
   NumberedWord words[kWords] = {};
 };
 
-// Returns this thread's word of a result, and of `unseen` in place of the result's; 0 beyond the
-// first Answer::kWords threads of a block.
-__device__ inline std::uint32_t word_of(const RawResult& result, const UnseenSum& unseen) {
-  constexpr unsigned kUnseen = offsetof(RawResult, unseen) / sizeof(std::uint32_t),
-                     kEnd = kUnseen + sizeof(UnseenSum) / sizeof(std::uint32_t);
+// Returns this thread's word of a result; 0 beyond the first Answer::kWords threads of a block.
+__device__ inline std::uint32_t word_of(const RawResult& result) {
   const unsigned k = threadIdx.x;
-  if (k >= kUnseen && k < kEnd) return reinterpret_cast<const std::uint32_t*>(&unseen)[k - kUnseen];
   return k < Answer::kWords ? reinterpret_cast<const std::uint32_t*>(&result)[k] : 0;
 }
 

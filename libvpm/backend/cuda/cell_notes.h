@@ -87,12 +87,11 @@ struct RefinedSpace {
   PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
-// Holds the lengths of a query's lists, and what of the tool was not seen; all are 0 at its start.
+// Holds the lengths of a query's lists; all are 0 at its start.
 struct RefinedCounters {
   unsigned hidden = 0;  // cells that another surface may hide
   unsigned far = 0;     // FarPieces
   unsigned cut = 0;     // cut cells; 0 until CutCells::list()
-  UnseenSum unseen;
 };
 
 // Counts a cell as boundary or inside if the bits just added to its word say so.
@@ -113,7 +112,7 @@ __device__ inline unsigned read(const unsigned& counter) {
 __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
   __shared__ RefinedCounters found;
   __syncthreads();
-  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0, {}};
+  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0};
   __syncthreads();
   return found;
 }
@@ -128,15 +127,14 @@ struct PoseWork {
   const CellNotes& notes;  // the pose's notes in `space`
   RefinedCounters& counters;
   BlockRange part;
-  UnseenSum& unseen;  // in shared memory: of the threads of a block, or of a warp
 
   __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
     return {surface, to_surface, level.tool_radius, view};
   }
 
-  // Adds to `unseen`; many threads may do so at once.
+  // Adds to what was not seen.
   __device__ void add_unseen(const UnseenSum& found) const {
-    if constexpr (TellsSight<Surface>) add_atomically(found, unseen);
+    if constexpr (TellsSight<Surface>) add_atomically(found, unseen_of_warp(threadIdx.x / 32));
   }
   // Adds a piece that was sampled, if it does not count.
   __device__ void add_unseen(const CellMeasure<Surface>& measure, const ToolPiece& piece,
@@ -148,17 +146,20 @@ struct PoseWork {
   // Adds what stands for a task on the free side of the surface, by the sight of its cell's ball,
   // or a block.
   __device__ void add_free(const BlockTask& task, Sight of_ball) const {
+    if (of_ball == Sight::seen) return;  // mostly: nothing is read then
     const WholePart whole = whole_part_of(task.flags);
     if (whole == WholePart::cell) add_free(level.cell_masses[task.cell], of_ball);
     if (whole == WholePart::block) add_free(level.block_masses[task.block], of_ball);
   }
   __device__ void add_free(const BlockMass& mass, Sight of_ball) const {
+    if (of_ball == Sight::seen) return;
     UnseenSum found;
     measure_of({}).add_free(mass, of_ball, found);
     add_unseen(found);
   }
   // Adds the tasks of a group that is wholly free.
   __device__ void add_free(const TaskGroup& group, Sight of_ball) const {
+    if (of_ball == Sight::seen) return;
     UnseenSum found;
     found.add(group.weight, of_ball);
     add_unseen(found);

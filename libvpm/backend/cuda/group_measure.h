@@ -48,7 +48,6 @@ class GroupMeasure {
   template <bool kApart = false>
   __device__ void run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
-    if (threadIdx.x == 0) work_.unseen = {};
     clear_seen();
     tasks_.clear();
     const Subwarp lanes(lanes_of_group());
@@ -73,10 +72,6 @@ class GroupMeasure {
       __syncthreads();
     }
     tasks_.finish();
-    if constexpr (TellsSight<Surface>) {
-      __syncthreads();
-      if (threadIdx.x == 0) add_atomically(work_.unseen, work_.counters.unseen);
-    }
   }
 
  private:

@@ -35,7 +35,6 @@ struct alignas(16) ImageShared {
   SurfaceSample on_surface, around[kPlacesAround];
   Vec3 normal;  // along which a uniform cluster is pushed
   OfTask tasks[TaskGroup::kTasks];
-  UnseenSum unseen;  // of the group
 };
 
 // Samples the surface at the four places about a cluster's middle, each by one lane of a warp. The
@@ -63,7 +62,7 @@ struct SampleByWarp {
 template <class Found>
 class ImageTaskGroup {
  public:
-  // Takes the number of `lanes` per block task. `work.unseen` is that of the warp.
+  // Takes the number of `lanes` per block task.
   __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, const TaskGroup& group,
                             const WarpTask* tasks, unsigned lanes, ImageShared& shared,
                             ImageSums& sums)
@@ -81,12 +80,8 @@ class ImageTaskGroup {
         sums_(sums) {}
 
   __device__ void measure() {
-    if (threadIdx.x % 32 == 0) shared_.unseen = {};
     classify_balls();
     measure_tasks();
-    __syncwarp();
-    if (!kFindsPlanes && threadIdx.x % 32 == 0)
-      add_atomically(shared_.unseen, work_.counters.unseen);
   }
 
  private:
@@ -462,10 +457,6 @@ class ImageMeasure {
   // True if the launch has enough warps for the level.
   __device__ static bool is_for(const LevelView& level, BlockRange part) {
     return level.of_warps.count > 0 && level.of_warps.count <= part.parts * (blockDim.x / 32);
-  }
-  // Returns where the warp of this thread adds what was not seen.
-  __device__ static UnseenSum& unseen_of(Shared& shared) {
-    return reinterpret_cast<ImageShared*>(shared.warps[threadIdx.x / 32])->unseen;
   }
   // Returns the sums of this thread.
   __device__ ThreadResult run() {

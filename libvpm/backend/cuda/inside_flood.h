@@ -106,8 +106,9 @@ class CameraVisibility {
 
   // True if the first step has left `far` pieces.
   __device__ static bool has_more(unsigned far) { return far > 0; }
-  // Returns what this thread adds to the first step's result. Call from all threads of the team.
-  __device__ ThreadResult run() {
+  // Returns what this thread adds to the first step's result, and takes what counts from `unseen`,
+  // that of the pose. Call from all threads of the team.
+  __device__ ThreadResult run(UnseenSum& unseen) {
     ThreadResult result;
     const unsigned far = read_for_block(counters_).far;
     if (far > 0) {
@@ -117,7 +118,7 @@ class CameraVisibility {
           far, [](std::uint32_t) { return true; }, [](std::uint32_t) { return false; },
           [&](const FarPiece& far_piece) {
             result.sum.add(far_piece.sum);
-            add_term(counters_.unseen.unseen.value, -far_piece.weight.value);
+            add_term(unseen.unseen.value, -far_piece.weight.value);
             if (counts(far_piece.sum))
               count_cell(atomicOr(&notes_.words[far_piece.cell], cell_bit::counted),
                          cell_bit::counted, result);
@@ -188,7 +189,7 @@ class Flood {
   // True always: the flood comes after the first step.
   __device__ static bool has_more(unsigned) { return true; }
   // Returns this thread's part of the result. Call from all threads of the team.
-  __device__ ThreadResult run() {
+  __device__ ThreadResult run(UnseenSum& /*unseen*/) {
     const RefinedCounters found = read_for_block(counters_);
     if (found.hidden > 0 || found.far > 0) {
       cut_.list();

@@ -13,6 +13,7 @@ namespace vpm::cuda {
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kMostThreads = kBatchThreads;
 static_assert(kThreads <= kMostThreads);
+inline constexpr unsigned kMostWarps = kMostThreads / 32;
 
 // Returns the first of the neighbouring samples that share a direction with this lane's; `sharing`
 // has a bit for each lane.
@@ -73,6 +74,18 @@ __device__ inline void add_atomically(const UnseenSum& part, UnseenSum& sum) {
   if (part.out_of_view.value != 0) add_term(sum.out_of_view.value, part.out_of_view.value);
 }
 
+// Returns what was not seen of the parts that a warp of this block measures: a sum in shared
+// memory.
+__device__ inline UnseenSum& unseen_of_warp(unsigned warp) {
+  __shared__ UnseenSum of_warps[kMostWarps];
+  return of_warps[warp];
+}
+// Clears that of this thread's warp. Call from all its threads.
+__device__ inline void clear_unseen() {
+  if (threadIdx.x % 32 == 0) unseen_of_warp(threadIdx.x / 32) = {};
+  __syncwarp();
+}
+
 template <class Sum>
 __device__ void add_atomically(Sum part, Sum& sum) {
   const std::int64_t* const terms = terms_of(part);
@@ -84,7 +97,7 @@ __device__ void add_atomically(Sum part, Sum& sum) {
 
 // Adds a block's parts to `total`, which may lie in shared memory.
 __device__ inline void add_block(const ThreadResult& part, RawResult& total) {
-  constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
+  constexpr unsigned kCounts = kTerms;
   __shared__ std::int64_t values[kMostWarps][kTerms + 1];
   const ToolSum& s = part.sum;
   const std::int64_t counts = std::int64_t{part.inside} << 32 | part.boundary;
@@ -106,6 +119,14 @@ __device__ inline void add_block(const ThreadResult& part, RawResult& total) {
     atomicAdd(&total.boundary, static_cast<unsigned>(sum));
     atomicAdd(&total.inside, static_cast<unsigned>(sum >> 32));
   }
+}
+// Adds to `total` what the block's warps have not seen. Call after add_block(), which waits for
+// them.
+__device__ inline void add_unseen_of_warps(UnseenSum& total) {
+  if (threadIdx.x != 32) return;  // a thread that add_block() leaves idle
+  UnseenSum sum;
+  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum.add(unseen_of_warp(w));
+  add_atomically(sum, total);
 }
 
 }  // namespace vpm::cuda

@@ -86,22 +86,29 @@ union BlockShared {
 template <class Surface>
 __device__ ThreadResult measure_cells(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
                                       unsigned turn, BlockShared<Surface>& shared) {
-  const BlockRange part{blockIdx.x, gridDim.x};
-  const auto work_with = [&](UnseenSum& unseen) {
-    return PoseWork<Surface>{
-        launch.level,     launch.surface, to_surface, launch.space, launch.space.notes[turn % 2],
-        *launch.counters, part,           unseen};
-  };
+  const PoseWork<Surface> work{launch.level,
+                               launch.surface,
+                               to_surface,
+                               launch.space,
+                               launch.space.notes[turn % 2],
+                               *launch.counters,
+                               {blockIdx.x, gridDim.x}};
+  if constexpr (TellsSight<Surface>) clear_unseen();
   if constexpr (kHasImageSchedule<Surface>) {
-    if (ImageMeasure::is_for(launch.level, part)) {
-      const PoseWork<Surface> work = work_with(ImageMeasure::unseen_of(shared.image));
+    if (ImageMeasure::is_for(launch.level, work.part))
       return ImageMeasure(work, shared.image).run();
-    }
   }
-  const PoseWork<Surface> work = work_with(shared.measure.unseen());
   ThreadResult found;
   GroupMeasure<Surface>(work, shared.measure, found).run();
   return found;
+}
+
+// Adds what a block has found in the first step, before a surface that tells the inside.
+template <class Surface>
+__device__ void add_first_step(const ThreadResult& found, RawResult& total) {
+  static_assert(Surface::kTellsInside || !TellsSight<Surface>, "a flood adds no unseen parts");
+  if constexpr (Surface::kTellsInside) add_block(found, total);
+  if constexpr (TellsSight<Surface>) add_unseen_of_warps(total.unseen);
 }
 
 // Notes the planes of cut cells if the first step has not; few queries need them.
@@ -116,8 +123,7 @@ __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& laun
                                     launch.space,
                                     launch.space.notes[turn % 2],
                                     *launch.counters,
-                                    part,
-                                    ImageMeasure::unseen_of(shared.image)};
+                                    part};
   ImageMeasure(work, shared.image).note_planes();
 }
 
@@ -145,10 +151,10 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
   BlockTeam team;
   add_block(Flood<Surface, BlockTeam>(launch.level, launch.surface, to_surface, launch.space,
                                       sequence, *launch.counters, team, shared.inside)
-                .run(),
+                .run(total.unseen),
             total);
   __syncthreads();
-  send(word_of(total, total.unseen), now() - met, launch.answer, sequence);
+  send(word_of(total), now() - met, launch.answer, sequence);
   if (threadIdx.x == 0) {
     launch.totals->done = 0;
     *launch.counters = RefinedCounters{};
@@ -164,14 +170,14 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
   const ThreadResult found = measure_cells(launch, to_surface, sequence, shared);
-  if (Surface::kTellsInside) add_block(found, totals->result);
+  add_first_step<Surface>(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
   unsigned far = 0;
   const auto has_more = [&] { return Rest::has_more(far); };
   if (is_last) {
     // Read together with `far`.
-    const std::uint32_t word = word_of(totals->result, launch.counters->unseen);
+    const std::uint32_t word = word_of(totals->result);
     far = read(launch.counters->far);
     if (!has_more()) send(word, now() - met, launch.answer, sequence);
   }
@@ -187,11 +193,10 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
     GridTeam meeting = team;  // a copy, since a function's argument lies in memory
     Rest rest(launch.level, launch.surface, to_surface, launch.space, sequence, *launch.counters,
               meeting, shared.inside);
-    add_block(rest.run(), totals->result);
+    add_block(rest.run(totals->result.unseen), totals->result);
   }
   if (!is_last_of(totals->done, gridDim.x)) return;
-  if (has_more())
-    send(word_of(totals->result, launch.counters->unseen), now() - met, launch.answer, sequence);
+  if (has_more()) send(word_of(totals->result), now() - met, launch.answer, sequence);
   __syncthreads();
   if (threadIdx.x == 0) {
     *totals = Totals{};
@@ -242,25 +247,22 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
       total = RawResult{};
     }
     __syncthreads();
-    const PoseWork<Surface> work{level, launch.surface,         to_surface,
-                                 space, space.notes[turn % 2],  counters,
-                                 {},    shared.measure.unseen()};
+    const PoseWork<Surface> work{
+        level, launch.surface, to_surface, space, space.notes[turn % 2], counters, {}};
     found = ThreadResult{};
+    if constexpr (TellsSight<Surface>) clear_unseen();
     // Among points groups are classified apart: so batches take 5 % less time, single poses 15 %
     // more.
     constexpr bool kApart = !Surface::kTellsInside;
     GroupMeasure<Surface>(work, shared.measure, found).template run<kApart>();
-    if (Surface::kTellsInside) add_block(found, total);
+    add_first_step<Surface>(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
     Inside<Surface, BlockTeam> inside(level, launch.surface, to_surface, space, turn, counters,
                                       team, shared.inside);
-    if (inside.has_more(counters.far)) add_block(inside.run(), total);
+    if (inside.has_more(counters.far)) add_block(inside.run(total.unseen), total);
     __syncthreads();
-    if (threadIdx.x == 0) {
-      total.unseen = counters.unseen;
-      results[p] = total;
-    }
+    if (threadIdx.x == 0) results[p] = total;
   }
   clear_notes(launch.levels[tool]);  // the next launch begins with turn 0
 }

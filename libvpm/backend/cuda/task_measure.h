@@ -71,10 +71,6 @@ struct MeasureShared {
   unsigned uniform_count;
   std::uint32_t first_tasks[kMeasureThreads];  // first block task of each slot's group
   TaskLists lists;
-  // Bytes, since this lies in a union, whose members cannot have initial values.
-  alignas(UnseenSum) unsigned char unseen_bytes[sizeof(UnseenSum)];
-
-  __device__ UnseenSum& unseen() { return *reinterpret_cast<UnseenSum*>(unseen_bytes); }
 };
 
 template <class Surface>
