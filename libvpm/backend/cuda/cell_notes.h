@@ -151,6 +151,11 @@ struct PoseWork {
     if (whole == WholePart::cell) add_free(level.cell_masses[task.cell], of_ball);
     if (whole == WholePart::block) add_free(level.block_masses[task.block], of_ball);
   }
+  __device__ void add_free(const WarpTask& task, Sight of_ball) const {  // holds its masses
+    const WholePart whole = whole_part_of(task.flags);
+    if (whole == WholePart::cell) add_free(task.cell_mass, of_ball);
+    if (whole == WholePart::block) add_free(task.block_mass, of_ball);
+  }
   __device__ void add_free(const BlockMass& mass, Sight of_ball) const {
     if (of_ball == Sight::seen) return;
     UnseenSum found;

@@ -112,17 +112,22 @@ class ImageTaskGroup {
     measure_by_plane(counts, found);
     if (counts != Counts::not_at_all && lane_ == 0) sums_.note(task_, found);
   }
+  // Adds what was not seen of a part that is free. The pass that finds planes adds nothing.
+  template <class Part>
+  __device__ void add_free(const Part& part, Sight sight) const {
+    if constexpr (!kFindsPlanes) work_.add_free(part, sight);
+  }
   // Adds what was not seen of a group that is wholly free.
   __device__ void add_free_group() {
     const Sight sight = DepthSurface::sight_of(shared_.in_ball);
     if (sight == Sight::mixed)
       add_free_task(sight);
     else if (threadIdx.x % 32 == 0)
-      work_.add_free(group_, sight);
+      add_free(group_, sight);
   }
   // Adds what was not seen of a task whose cell is free, by the sight of that or of the group.
   __device__ void add_free_task(Sight sight) {
-    if (lane_ == 0) work_.add_free(task_, sight);
+    if (lane_ == 0) add_free(task_, sight);
   }
 
   __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
@@ -243,7 +248,7 @@ class ImageTaskGroup {
         plane_ = seen_.plane;
         switch (seen_.block) {
           case BlockClass::free:
-            if (lane_ == 0) work_.add_free(task_.block_mass, seen_.sight_of_block);
+            if (lane_ == 0) add_free(task_.block_mass, seen_.sight_of_block);
             return Counts::not_at_all;
           case BlockClass::uncut:
             return Counts::whole_block;
@@ -367,7 +372,7 @@ class ImageTaskGroup {
     Vec3 normal;
     if (searches) normal = search.normal();
     normal = Warp::from(normal, leader);
-    if (exists && piece.weight > 0) work_.add_unseen(measure, piece, sampled);
+    if (!kFindsPlanes && exists && piece.weight > 0) work_.add_unseen(measure, piece, sampled);
     if (is_inside && piece.weight > 0) add_piece(measure, piece, sampled, normal, found);
     return normal;
   }
