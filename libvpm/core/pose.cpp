@@ -32,12 +32,21 @@ void refuse_scale(const Rotation& m) {
          "divide its columns by that, and scale the mesh instead if that is meant");
 }
 
+// Refuses a matrix that is off a rotation by `off`, and says why.
+[[noreturn]] void refuse_matrix(const Rotation& m, double off) {
+  if (!(determinant(m) > 0))
+    refuse("the rotation matrix mirrors (its determinant is not positive)", "pose",
+           "give a proper rotation");
+  refuse_scale(m);
+  refuse("the 3x3 block is " + std::to_string(off) + " away from a rotation matrix", "pose");
+}
+
 }  // namespace
 
 Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
   const double length = length_of(q);
   if (!std::isfinite(length)) refuse("the quaternion is not finite", "pose");
-  if (!(std::abs(length - 1) <= kRotationTolerance)) {
+  if (!is_unit(length)) {
     refuse("the quaternion has length " + std::to_string(length) + " instead of 1", "pose",
            "give x,y,z,w of a unit quaternion");
   }
@@ -51,14 +60,7 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
   }
   const Rotation given{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
   const double off = off_rotation(given);
-  if (!(determinant(given) > 0)) {
-    refuse("the rotation matrix mirrors (its determinant is not positive)", "pose",
-           "give a proper rotation");
-  }
-  if (!(off <= kRotationTolerance)) {
-    refuse_scale(given);
-    refuse("the 3x3 block is " + std::to_string(off) + " away from a rotation matrix", "pose");
-  }
+  if (!is_near_rotation(given)) refuse_matrix(given, off);
   if (deviation != nullptr) *deviation = off;
   return nearest_rotation(given);
 }

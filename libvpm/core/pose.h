@@ -105,6 +105,16 @@ VPM_HD inline double off_rotation(const Rotation& m) {
   return most;
 }
 
+// True for the length of a quaternion that is taken for a unit quaternion. False if it is not
+// finite.
+VPM_HD inline bool is_unit(double length) {
+  return std::abs(length - 1) <= kRotationTolerance;
+}
+// True for a matrix, of finite entries, that is taken for a rotation.
+VPM_HD inline bool is_near_rotation(const Rotation& m) {
+  return determinant(m) > 0 && off_rotation(m) <= kRotationTolerance;
+}
+
 // Returns the shortest rotation as a vector, axis times angle in [0, pi]. This and the next two use
 // the C library's functions, so their results may differ in the last bits between machines.
 Vec3 rotation_vector(const Rotation& r);

@@ -25,12 +25,12 @@ VPM_HD inline bool read_rotation(const double* n, std::uint32_t width, Rotation&
     const Quaternion q{n[3], n[4], n[5], n[6]};
     const double length = length_of(q);
     rotation = rotation_of(q, length);
-    return std::abs(length - 1) <= kRotationTolerance;
+    return is_unit(length);
   }
   const Rotation given{{n[0], n[1], n[2]}, {n[4], n[5], n[6]}, {n[8], n[9], n[10]}};
   rotation = nearest_rotation(given);
   const bool ends_well = width == 12 || (n[12] == 0 && n[13] == 0 && n[14] == 0 && n[15] == 1);
-  return ends_well && determinant(given) > 0 && off_rotation(given) <= kRotationTolerance;
+  return ends_well && is_near_rotation(given);
 }
 
 // Reads a pose as a query takes it. Returns false for one that is refused.
