@@ -115,15 +115,15 @@ std::vector<PoseView::Step> PoseView::kept() const {
 
 void PoseView::add_facts(Page& page) const {
   std::string summary = options_.measure == Measure::paper ? "paper" : "refined";
-  for (std::size_t t = 0; t < tools_.size(); ++t)
-    summary += ", " + std::to_string(levels_[t]) + " of " +
-               std::to_string(model_of(t).spheres.size()) + " spheres";
-  page.set_summary(summary);
   for (std::size_t t = 0; t < tools_.size(); ++t) {
     page.add_fact("tool", names_[t] + maker_of(model_of(t).provenance.json()));
-    page.add_fact("level", std::to_string(levels_[t]) + " of " +
-                               std::to_string(model_of(t).spheres.size()) + " spheres");
+    if (levels_[t] == 0) continue;
+    const std::string level = std::to_string(levels_[t]) + " of " +
+                              std::to_string(model_of(t).spheres.size()) + " spheres";
+    page.add_fact("level", level);
+    summary += ", " + level;
   }
+  page.set_summary(summary);
   for (const auto& [name, cloud] : clouds_)
     page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance.json()));
   for (const std::string& name : solids_.names()) page.add_fact("solid", name);
@@ -291,10 +291,11 @@ std::size_t PoseView::add_tool(Page& page, const std::vector<Step>& steps, std::
   }
   const std::size_t body = page.add_body(names_[tool], model.center_of_mass, model.radius, poses);
   const std::string of = tools_.size() > 1 ? " of " + names_[tool] : "";
-  page.add_spheres({.name = "spheres by state" + of,
-                    .spheres = {model.spheres.data(), levels_[tool]},
-                    .body = body,
-                    .states = bits});
+  if (levels_[tool] > 0)
+    page.add_spheres({.name = "spheres by state" + of,
+                      .spheres = {model.spheres.data(), levels_[tool]},
+                      .body = body,
+                      .states = bits});
   if (!meshes_[tool].triangles.empty()) {
     page.add_mesh({.name = "tool's mesh" + of,
                    .color = kToolColors[tool % kToolColors.size()],
@@ -341,7 +342,7 @@ std::string PoseView::title() const {
   for (const auto& [name, cloud] : clouds_) scene.push_back(name);
   if (frames_) scene.push_back(frames_name_);
   for (const std::string& name : solids_.names()) scene.push_back(name);
-  return title + " in " + file::listed(scene);
+  return scene.empty() ? title : title + " in " + file::listed(scene);
 }
 
 Page PoseView::page() const {
@@ -363,9 +364,12 @@ Page PoseView::page() const {
 
   std::vector<std::uint32_t> numbers;
   std::size_t deepest = 0;
+  double most = 0;  // of the sums of the tools' volumes, m^3
   for (std::size_t k = 0; k < steps.size(); ++k) {
     numbers.push_back(static_cast<std::uint32_t>(steps[k].index));
-    if (steps[k].answers[0].result.volume > steps[deepest].answers[0].result.volume) deepest = k;
+    double sum = 0;
+    for (const Answer& answer : steps[k].answers) sum += answer.result.volume;
+    if (sum > most) most = sum, deepest = k;
   }
   page.steps() = {
       {"name", "pose"},    {"count", steps.size()},

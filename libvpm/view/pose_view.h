@@ -45,8 +45,8 @@ class PoseView {
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }
 
   std::size_t tools() const { return tools_.size(); }
-  // Adds the answer at a job of a tool at its level of `level` spheres. Expects the tools in their
-  // order.
+  // Adds the answer at a job of a tool at its level of `level` spheres, 0 where none are to be
+  // shown. Expects the tools in their order.
   void add(const Job& job, Answer answer, std::uint32_t level);
   // True if the next step need not be answered, unless it is the last one: it is not kept, and no
   // motion goes on from it.

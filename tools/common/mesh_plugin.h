@@ -38,11 +38,11 @@ using ReadRobot = bool (*)(const char* urdf, const RobotOptions* options, const 
                            Robot* robot, std::vector<std::array<std::size_t, 2>>* ignored,
                            PackingFault* fault);
 
-// Sets `body` to the solid of a link, without what forces need, and writes its tool model, packed
-// with `spheres` spheres, to the file `output` if that is not null. Thread-safe. Returns false, and
-// fills `fault`, where that fails.
-using PrepareLink = bool (*)(const Robot* robot, std::size_t link, unsigned spheres,
-                             const char* output, SayOfMesh say, void* listener,
+// Sets `body` to the solid of a link, prepared for forces if `with_force`, too, and writes its tool
+// model, packed with `spheres` spheres, to the file `output` if that is not null. Thread-safe.
+// Returns false, and fills `fault`, where that fails.
+using PrepareLink = bool (*)(const Robot* robot, std::size_t link, bool with_force,
+                             unsigned spheres, const char* output, SayOfMesh say, void* listener,
                              std::optional<SolidBody>* body, PackingFault* fault);
 
 // Caps the threads of the plug-in, to be called once, before it works.

@@ -132,7 +132,7 @@ RobotOfFiles read_robot_files(const Program& program, const std::string& urdf,
 }
 
 LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_t link,
-                          unsigned spheres) {
+                          bool with_force, unsigned spheres) {
   const auto prepare = reinterpret_cast<PrepareLink>(function_of_meshes(kPrepareLink));
   const std::string name = "link '" + file::shown(robot.links[link].name) + "'";
   Listener listener{program, name};
@@ -141,8 +141,8 @@ LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_
   const std::string path = model ? model->path() : "";
   std::optional<SolidBody> solid;
   PackingFault fault;
-  if (!prepare(&robot, link, spheres, model ? path.c_str() : nullptr, say_of_mesh, &listener,
-               &solid, &fault))
+  if (!prepare(&robot, link, with_force, spheres, model ? path.c_str() : nullptr, say_of_mesh,
+               &listener, &solid, &fault))
     throw Error(static_cast<ErrorKind>(fault.kind), fault.problem,
                 fault.where[0] == 0 ? name : fault.where, fault.hint);
   return {*solid, model ? std::optional(Tool::read(path)) : std::nullopt};

@@ -51,9 +51,9 @@ struct LinkBodies {
   std::optional<Tool> tool;
 };
 
-// Returns the solid of a link and, if `spheres` is not 0, its tool of that many spheres. Says what
-// is said of its mesh.
+// Returns the solid of a link, prepared `with_force` for what forces need, too, and, if `spheres`
+// is not 0, its tool of that many spheres. Says what is said of its mesh.
 LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_t link,
-                          unsigned spheres);
+                          bool with_force, unsigned spheres);
 
 }  // namespace vpm::tools

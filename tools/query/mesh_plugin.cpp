@@ -82,14 +82,14 @@ extern "C" __attribute__((visibility("default"))) bool vpm_read_robot(
 }
 
 extern "C" __attribute__((visibility("default"))) bool vpm_prepare_link(
-    const Robot* robot, std::size_t link, unsigned spheres, const char* output, SayOfMesh say,
-    void* listener, std::optional<SolidBody>* body, PackingFault* fault) {
+    const Robot* robot, std::size_t link, bool with_force, unsigned spheres, const char* output,
+    SayOfMesh say, void* listener, std::optional<SolidBody>* body, PackingFault* fault) {
   return is_done(
       [&] {
         const SolidMesh solid = link_solid(*robot, link);
         // Shapes of one link overlap as a rule, which is no reason for a warning.
         if (robot->links[link].shapes.size() == 1) tell(solid, say, listener);
-        body->emplace(solid, false);
+        body->emplace(solid, with_force);
         if (output != nullptr) build_tool(pack(solid, {.spheres = spheres})).write(output);
       },
       fault);

@@ -92,9 +92,11 @@ nlohmann::json hash_of(const std::string& name) {
 
 // Returns all that lines of results depend on. Throws Error(invalid_argument) with --resume if an
 // input cannot be compared with that of the run before.
-nlohmann::json run_of(const Program& program, const Arguments& a) {
+nlohmann::json run_of(const Program& program, const Arguments& a,
+                      const std::vector<std::string>& more_inputs) {
   nlohmann::json run = program.parameters();
-  for (const char* name : {"resume", "batch", "realtime"}) run.erase(name);
+  for (const char* name : {"resume", "batch", "realtime", "remove", "urdf", "joints", "srdf"})
+    run.erase(name);
   run["version"] = VPM_VERSION;
   run["frames"] = a.replay.frames;
   run["frame-rate"] = a.replay.frame_rate;
@@ -112,6 +114,10 @@ nlohmann::json run_of(const Program& program, const Arguments& a) {
   for (const std::string& poses : a.poses) add("poses", poses);
   add("camera-poses", a.replay.camera_poses);
   add("remove", a.replay.remove);
+  for (const auto& [option, name] :
+       {std::pair{"urdf", a.urdf}, {"joints", a.joints}, {"srdf", a.srdf}})
+    add(option, name);
+  for (const std::string& name : more_inputs) add("meshes", name);
   return run;
 }
 
@@ -167,10 +173,12 @@ void write_lines(const std::string& path, std::span<const CsvColumn> columns,
 }
 
 ResultOutput::ResultOutput(const Program& program, const Arguments& arguments,
-                           std::span<const CsvColumn> columns)
+                           std::span<const CsvColumn> columns,
+                           const std::vector<std::string>& more_inputs)
     : program_(program), path_(arguments.output) {
   if (KeptLines::are_kept(path_))
-    kept_.emplace(path_, run_of(program, arguments), leftover_of(arguments, program.common()));
+    kept_.emplace(path_, run_of(program, arguments, more_inputs),
+                  leftover_of(arguments, program.common()));
   else
     straight_.emplace(path_);
   there_ = kept_ ? kept_->lines() : 0;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "libvpm/file/stream.h"
 #include "tools/query/arguments.h"
@@ -32,10 +33,11 @@ class ResultOutput {
  public:
   // Opens the output of --output, whose first line in CSV has the columns' names. Lines of a file
   // are kept if the run is interrupted (kept_lines.h), and go on after those that are there with
-  // --resume. The program and its arguments must outlive this. Throws as file::Output and
-  // KeptLines.
+  // --resume, if `more_inputs`, files that no option names, are the same, too. The program and its
+  // arguments must outlive this. Throws as file::Output and KeptLines.
   ResultOutput(const Program& program, const Arguments& arguments,
-               std::span<const CsvColumn> columns);
+               std::span<const CsvColumn> columns,
+               const std::vector<std::string>& more_inputs = {});
   // Says how to go on if lines are kept.
   ~ResultOutput();
   ResultOutput(const ResultOutput&) = delete;

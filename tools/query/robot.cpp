@@ -11,11 +11,12 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/file/text.h"
-#include "libvpm/model/solid.h"
+#include "libvpm/view/pose_view.h"
 #include "tools/common/error_text.h"
 #include "tools/common/mesh_tool.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
 #include "tools/query/result_output.h"
@@ -24,8 +25,13 @@
 namespace vpm::tools {
 namespace {
 
-// Links are packed with as many spheres as a mesh of --tool is; solids of a scene ask for none.
+// Links are packed with as many spheres as a mesh of --tool is; solids of a scene, and pages
+// without a scene, ask for none.
 constexpr unsigned kSpheres = 1000, kSpheresForSolids = 1;
+
+// What is known of a link at a configuration: its pose, and what it has in the scene and shares
+// with other links.
+using LinkAnswer = view::PoseView::Answer;
 
 nlohmann::ordered_json seven_of(const Pose& pose) {
   const auto& [x, y, z] = pose.translation;
@@ -37,12 +43,13 @@ nlohmann::ordered_json seven_of(const Pose& pose) {
 class ReadyRobot {
  public:
   ReadyRobot(const Program& program, const Arguments& a)
-      : files_(read_robot_files(program, a.urdf, {.package_path = a.packages}, a.srdf)) {
-    const bool has_scene = !a.clouds.empty() || !a.solids.empty();
-    const unsigned spheres = !has_scene ? 0 : a.clouds.empty() ? kSpheresForSolids : kSpheres;
+      : files_(read_robot_files(program, a.urdf, {.package_path = a.packages}, a.srdf)),
+        options_{.with_force = a.contacts > 0, .contacts = static_cast<std::uint32_t>(a.contacts)} {
+    const bool are_tools = !a.solids.empty() || !a.view.empty();
+    const unsigned spheres = !a.clouds.empty() ? kSpheres : are_tools ? kSpheresForSolids : 0;
     for (std::size_t k = 0; k < robot().links.size(); ++k) {
       if (robot().links[k].shapes.empty()) continue;
-      LinkBodies bodies = bodies_of_link(program, robot(), k, spheres);
+      LinkBodies bodies = bodies_of_link(program, robot(), k, options_.with_force, spheres);
       links_.push_back(k);
       solids_.push_back(std::move(bodies.solid));
       if (bodies.tool) tools_.push_back(std::move(*bodies.tool));
@@ -60,21 +67,29 @@ class ReadyRobot {
     for (std::size_t k = 0; k < links_.size(); ++k) all.push_back(name(k));
     return all;
   }
+  // Returns the paths of the meshes that the URDF names.
+  std::vector<std::string> meshes() const {
+    std::vector<std::string> paths;
+    for (const RobotLink& link : robot().links)
+      for (const CollisionShape& shape : link.shapes)
+        if (!shape.mesh.empty()) paths.push_back(shape.mesh);
+    return paths;
+  }
 
-  // Adds to a line what pairs of links share at poses of all links.
-  void add_shared(const std::vector<Pose>& poses, nlohmann::ordered_json& line) {
+  // Adds what pairs of links share at the links' poses to a line and to the links' answers.
+  void add_shared(std::vector<LinkAnswer>& answers, nlohmann::ordered_json& line) {
     double sum = 0;
     nlohmann::ordered_json shared = nlohmann::ordered_json::array();
     for (Pair& pair : pairs_) {
-      const Pose &a = poses[links_[pair.first]], &b = poses[links_[pair.second]];
-      const SolidBody &first = solids_[pair.first], &second = solids_[pair.second];
-      if (norm(a * first.center_of_mass() - b * second.center_of_mass()) >
-          first.radius() + second.radius())
-        continue;
-      const double volume = pair.query.run(a, b).volume;
-      if (volume <= 0) continue;
-      sum += volume;
-      shared.push_back({{"links", {name(pair.first), name(pair.second)}}, {"volume", volume}});
+      const Overlap found = overlap_of(pair, answers[pair.first].pose, answers[pair.second].pose);
+      if (found.volume <= 0) continue;
+      sum += found.volume;
+      nlohmann::ordered_json& told = shared.emplace_back();
+      told["links"] = {name(pair.first), name(pair.second)};
+      told["volume"] = found.volume;
+      if (options_.contacts > 0) told["contacts"] = contacts_of_pair(found.contacts, 1);
+      add_to(answers[pair.first], found, 1, solids_[pair.first].volume());
+      add_to(answers[pair.second], found, -1, solids_[pair.second].volume());
     }
     line["self_volume"] = sum;
     line["self"] = std::move(shared);
@@ -86,16 +101,35 @@ class ReadyRobot {
     OverlapQuery query;
   };
 
+  Overlap overlap_of(Pair& pair, const Pose& a, const Pose& b) const {
+    const SolidBody &first = solids_[pair.first], &second = solids_[pair.second];
+    const double distance = norm(a * first.center_of_mass() - b * second.center_of_mass());
+    if (distance > first.radius() + second.radius()) return {};
+    return pair.query.run(a, b);
+  }
+
+  // Adds what a link shares with another to its answer. Normals times `sign` point out of the link,
+  // whose volume is `volume`, m^3.
+  static void add_to(LinkAnswer& answer, const Overlap& found, double sign, double volume) {
+    answer.result.volume += found.volume;
+    answer.result.volume_fraction += found.volume / volume;
+    for (Contact contact : found.contacts) {
+      contact.normal = sign * contact.normal;
+      answer.contacts.push_back(contact);
+    }
+  }
+
   void add_pairs() {
     for (std::size_t i = 0; i < links_.size(); ++i)
       for (std::size_t j = i + 1; j < links_.size(); ++j) {
         const std::array<std::size_t, 2> pair{links_[i], links_[j]};
         if (std::ranges::binary_search(files_.ignored, pair)) continue;
-        pairs_.push_back({i, j, OverlapQuery(solids_[i], solids_[j], {.with_force = false})});
+        pairs_.push_back({i, j, OverlapQuery(solids_[i], solids_[j], options_)});
       }
   }
 
   RobotOfFiles files_;
+  OverlapOptions options_;
   std::vector<std::size_t> links_;
   std::vector<SolidBody> solids_;
   std::vector<Tool> tools_;
@@ -106,33 +140,44 @@ class ReadyRobot {
 class SceneOfLinks {
  public:
   SceneOfLinks(QuerySetup& setup, const Pose& first)
-      : scene_(setup), query_(setup.tools, setup.options, setup.level, scene_.scene(), first) {}
+      : scene_(setup),
+        query_(setup.tools, setup.options, setup.level, scene_.scene(), first),
+        tells_contacts_(setup.arguments.contacts > 0) {}
 
-  // Adds to a line what the scene gives for each link, and the sum of all, whose torque is about
-  // the origin.
-  void ask(const std::vector<Tool>& tools, const std::vector<Pose>& poses,
+  // Adds what the scene gives for each link to its answer and to a line, and to the line the sum of
+  // all, whose torque is about the origin.
+  void ask(const std::vector<Tool>& tools, std::vector<LinkAnswer>& answers,
            nlohmann::ordered_json& line) {
     double volume = 0;
     Vec3 force, torque;
     for (std::size_t k = 0; k < tools.size(); ++k) {
-      const Result result = query_.run(scene_.scene(), poses[k], k);
-      scene_.see(poses[k], k, result);
+      const auto& [pose, result, states, contacts] = answers[k] = answer(k, answers[k].pose);
+      scene_.see(pose, k, result);
       add_measures(line["links"][k], result);
+      if (tells_contacts_) line["links"][k]["contacts"] = contacts_of_pose(contacts);
       volume += result.volume;
       force += result.wrench.force;
-      torque +=
-          result.wrench.torque + cross(poses[k] * tools[k].center_of_mass(), result.wrench.force);
+      torque += result.wrench.torque + cross(pose * tools[k].center_of_mass(), result.wrench.force);
     }
     line["volume"] = volume;
     line["force"] = as_json(force);
     line["torque"] = as_json(torque);
   }
 
+  std::uint32_t level(std::size_t link) const { return query_.level(link); }
   void warn_at_end() const { scene_.warn_at_end(); }
 
  private:
+  LinkAnswer answer(std::size_t k, const Pose& pose) {
+    LinkAnswer answer{pose, query_.run(scene_.scene(), pose, k), {}, query_.contacts(k)};
+    for (const SphereState state : query_.states(k))
+      answer.states.push_back(static_cast<std::uint8_t>(state));
+    return answer;
+  }
+
   CloudScene scene_;
   LevelQuery query_;
+  bool tells_contacts_;
 };
 
 // The columns of CSV: of all, then of each link and of each pair that may be told. Their texts live
@@ -155,7 +200,7 @@ class Columns {
                                       {"above", "/above"}})
       columns_.push_back({name, place});
     for (std::size_t k = 0; k < links.size(); ++k)
-      for (const char* const field : {"volume", "pose"})
+      for (const char* const field : {"volume", "pose", "contacts"})
         add(links[k] + "_" + field, "/links/" + std::to_string(k) + "/" + field);
   }
 
@@ -173,16 +218,16 @@ class Columns {
   std::vector<CsvColumn> columns_;
 };
 
-// Says which joints have no value, and which are beyond their limits, each once.
+void note_missing(const Program& program, const std::set<std::string>& missing) {
+  if (missing.empty()) return;
+  program.note("joints that a line does not name are at 0: " +
+               file::listed({missing.begin(), missing.end()}));
+}
+
+// Says which joints are beyond their limits, each once.
 class JointRemarks {
  public:
   JointRemarks(const Program& program, const Robot& robot) : program_(program), robot_(robot) {}
-
-  void note_missing(const std::set<std::string>& missing) const {
-    if (missing.empty()) return;
-    program_.note("joints that a line does not name are at 0: " +
-                  file::listed({missing.begin(), missing.end()}));
-  }
 
   // Adds the joints beyond their limits to the line, and says so of each one once.
   void add_beyond(const Configuration& configuration, nlohmann::ordered_json& line) {
@@ -210,6 +255,79 @@ bool is_above(double limit, nlohmann::ordered_json& line) {
   return line["above"].get<bool>();
 }
 
+// Asks a robot, alone or in a scene, at configurations, and writes their lines.
+class RobotQueries {
+ public:
+  // `base` maps the robot's root to the world.
+  RobotQueries(const Program& program, const Arguments& arguments, ReadyRobot& robot,
+               const Pose& base)
+      : arguments_(arguments),
+        robot_(robot),
+        base_(base),
+        setup_(program, arguments, robot.tools(), robot.names()),
+        columns_(robot.names()),
+        remarks_(program, robot.robot()),
+        output_(program, arguments, columns_.all(), robot.meshes()) {}
+
+  // Asks those that no run before has told.
+  void ask_all(const std::vector<Configuration>& asked) {
+    if (!arguments_.clouds.empty() || !arguments_.solids.empty())
+      scene_ = std::make_unique<SceneOfLinks>(setup_, answers_at(asked.front()).front().pose);
+    for (std::size_t n = output_.pass_over(1); n < asked.size(); ++n) ask(n, asked[n]);
+    output_.finish();
+    if (scene_) scene_->warn_at_end();
+    if (setup_.view) setup_.view->write(arguments_.view);
+    setup_.program.note(std::to_string(asked.size()) + " configurations, at " +
+                        std::to_string(shared_) + " of which links share volume; " +
+                        std::to_string(robot_.pairs()) + " pairs of links were asked");
+  }
+
+  // True if a line is above --fail-above.
+  bool any_above() const { return any_above_; }
+
+ private:
+  std::vector<LinkAnswer> answers_at(const Configuration& configuration) const {
+    const std::vector<Pose> poses = link_poses(robot_.robot(), configuration.values, base_);
+    std::vector<LinkAnswer> answers;
+    for (const std::size_t link : robot_.links()) answers.push_back({poses[link], {}, {}, {}});
+    return answers;
+  }
+
+  void ask(std::size_t n, const Configuration& configuration) {
+    nlohmann::ordered_json line{{"configuration", n}};
+    if (!configuration.id.empty()) line["id"] = nlohmann::ordered_json::parse(configuration.id);
+    std::vector<LinkAnswer> answers = answers_at(configuration);
+    for (std::size_t k = 0; k < answers.size(); ++k)
+      line["links"].push_back({{"link", robot_.name(k)}, {"pose", seven_of(answers[k].pose)}});
+    if (scene_) scene_->ask(robot_.tools(), answers, line);
+    robot_.add_shared(answers, line);
+    remarks_.add_beyond(configuration, line);
+    if (arguments_.fail_above && is_above(*arguments_.fail_above, line)) any_above_ = true;
+    if (!line["self"].empty()) ++shared_;
+    output_.append(line);
+    if (setup_.view) show(std::move(answers));
+  }
+
+  void show(std::vector<LinkAnswer> answers) {
+    for (std::uint32_t k = 0; k < answers.size(); ++k) {
+      const Job job{answers[k].pose, k, {}};
+      view::PoseView::of(*setup_.view)
+          .add(job, std::move(answers[k]), scene_ ? scene_->level(k) : 0);
+    }
+  }
+
+  const Arguments& arguments_;
+  ReadyRobot& robot_;
+  Pose base_;
+  QuerySetup setup_;
+  Columns columns_;
+  JointRemarks remarks_;
+  ResultOutput output_;
+  std::unique_ptr<SceneOfLinks> scene_;  // null without bodies
+  std::size_t shared_ = 0;               // configurations at which links share volume
+  bool any_above_ = false;
+};
+
 }  // namespace
 
 void run_robot(Program& program, const Arguments& a) {
@@ -220,41 +338,11 @@ void run_robot(Program& program, const Arguments& a) {
                         : naming("--pose", [&] { return pose_from_text(a.pose, &deviation); });
   std::set<std::string> missing;
   const std::vector<Configuration> asked = read_configurations(a.joints, robot.robot(), missing);
-  JointRemarks remarks(program, robot.robot());
-  remarks.note_missing(missing);
-  QuerySetup setup(program, a, robot.tools(), robot.names());
-  const auto poses_at = [&](const Configuration& configuration) {
-    return link_poses(robot.robot(), configuration.values, base);
-  };
-  std::unique_ptr<SceneOfLinks> scene;
-  if (!robot.tools().empty())
-    scene = std::make_unique<SceneOfLinks>(setup, poses_at(asked.front())[robot.links().front()]);
-  const Columns columns(robot.names());
-  ResultOutput output(program, a, columns.all());
-  std::size_t above = 0, shared = 0;
-  for (std::size_t n = 0; n < asked.size(); ++n) {
-    const std::vector<Pose> poses = poses_at(asked[n]);
-    nlohmann::ordered_json line{{"configuration", n}};
-    if (!asked[n].id.empty()) line["id"] = nlohmann::ordered_json::parse(asked[n].id);
-    std::vector<Pose> of_links;
-    for (std::size_t k = 0; k < robot.links().size(); ++k) {
-      of_links.push_back(poses[robot.links()[k]]);
-      line["links"].push_back({{"link", robot.name(k)}, {"pose", seven_of(of_links.back())}});
-    }
-    if (scene) scene->ask(robot.tools(), of_links, line);
-    robot.add_shared(poses, line);
-    remarks.add_beyond(asked[n], line);
-    if (a.fail_above && is_above(*a.fail_above, line)) ++above;
-    if (!line["self"].empty()) ++shared;
-    output.append(line);
-  }
-  output.finish();
+  note_missing(program, missing);
+  RobotQueries queries(program, a, robot, base);
+  queries.ask_all(asked);
   note_deviation(program, "", deviation);
-  if (scene) scene->warn_at_end();
-  program.note(std::to_string(asked.size()) + " configurations, at " + std::to_string(shared) +
-               " of which links share volume; " + std::to_string(robot.pairs()) +
-               " pairs of links were asked");
-  if (above > 0) program.end_with(10);
+  if (queries.any_above()) program.end_with(10);
 }
 
 }  // namespace vpm::tools

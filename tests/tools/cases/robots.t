@@ -33,6 +33,30 @@ $ vpm-query --urdf arm.urdf --joints joints.jsonl --dump-config > call.json && $
 $ echo '{"reach":0.16}' | vpm-query --urdf arm.urdf --joints - --solid cube.off@0,0,1.1,0,0,0,1 --quiet | python3 -c 'import json, sys; print([round(p["volume"] * 1e6, 6) for p in json.load(sys.stdin)["links"]])'
 [0.0, 200.0, 100.0]
 
+# With --contacts links and pairs list theirs, which add up; the hand is 0.15 m deep in the wall, then half of it in the base.
+$ vpm-query --urdf arm.urdf --joints joints.jsonl --cloud wall.vpmc --contacts 2 --stiffness 3e4 --quiet -o touch.jsonl 2>&- && $VALIDATE robot-result touch.jsonl
+$ python3 -c 'import json; L = [json.loads(l) for l in open("touch.jsonl")]; P = [p for l in L for p in l["links"]]; print(all(sum(c["volume"] for c in p["contacts"]) == p["volume"] and all(sum(c[f][k] for c in p["contacts"]) == p[f][k] for f in ("force", "torque") for k in range(3)) for p in P)); print(*((c["body"], c["patches"], [round(x, 3) + 0 for x in c["normal"]]) for c in L[1]["links"][2]["contacts"])); print(*((s["links"], round(s["volume"] * 1e6, 3), [round(c["volume"] * 1e6, 3) for c in s["contacts"]], [round(x, 3) + 0 for x in s["contacts"][0]["centroid"]]) for l in L for s in l["self"]))'
+True
+(0, 1, [0.0, 0.0, 1.0])
+(['base', 'hand'], 1000.0, [1000.0], [0.0, 0.0, 0.05])
+$ vpm-query --urdf arm.urdf --joints joints.jsonl --contacts 2 --quiet -o touch.csv 2>&-; python3 -c 'import csv, json; print([(len(json.loads(r["self"])), r["hand_contacts"]) for r in csv.DictReader(open("touch.csv"))])'
+[(0, ''), (0, ''), (1, ''), (0, '')]
+
+# The page of --view has each link with its mesh and what it has in the scene and shares with others, with a scene and without.
+$ for o in "--cloud wall.vpmc" ""; do vpm-query --urdf arm.urdf --joints joints.jsonl $o --contacts --view page.html --quiet -o - 2>&1 > /dev/null | grep -v limits; python3 -c "import base64, json, struct; p = open('page.html').read(); d = json.JSONDecoder().raw_decode(p, p.index('{', p.index('id=\"data\"')))[0]; n = lambda c: [round(1e6 * x) for x in struct.unpack('<4f', base64.b64decode(c['values']['data']))]; print(d['title'], [l['name'] for l in d['layers'] if l['type'] == 'mesh'], sum(l['type'] == 'spheres' for l in d['layers']), [n(c) for c in d['columns'] if c['name'] == 'volume'], sorted({l['name'] for l in d['layers'] if l['type'] == 'lines'}))"; rm page.html; done
+base, slide, hand in wall.vpmc ["tool's mesh of base", "tool's mesh of slide", "tool's mesh of hand"] 3 [[0, 0, 1000, 0], [200, 3, 0, 0], [200, 1500, 1000, 0]] ['contacts of base', 'contacts of hand', 'contacts of slide']
+base, slide, hand ["tool's mesh of base", "tool's mesh of slide", "tool's mesh of hand"] 0 [[0, 0, 1000, 0], [0, 0, 0, 0], [0, 0, 1000, 0]] ['contacts of base', 'contacts of hand']
+
+# An interrupted run goes on, unless a link's mesh changed.
+$ seq 0 59 | awk '{print "[" $1/100 ",0.1]"}' > many.jsonl; cp cube.off link.off; sed 's/<box size=".1 .2 .1"/<mesh filename="link.off"/' arm.urdf > meshes.urdf; echo 'vpm-query --urdf meshes.urdf --joints many.jsonl --quiet "$@"' > ask.sh; for f in jsonl csv; do bash ask.sh -o whole.$f; (ulimit -f 8; bash ask.sh -o cut.$f); bash ask.sh -o cut.$f --resume && cmp cut.$f whole.$f; done; ls cut.*
+cut.csv
+cut.jsonl
+2> vpm-query: error: cannot write cut.jsonl: File too large
+2> vpm-query: error: cannot write cut.csv: File too large
+$ (ulimit -f 8; bash ask.sh -o other.jsonl 2>&-); sed -i "s/0[.]1/0.2/" link.off; bash ask.sh -o other.jsonl --resume
+2> vpm-query: error: other.jsonl.part: its lines are of a run with other meshes; give the same options and files, or --force without --resume to begin anew
+[2]
+
 # Lines that are none, and robots that are none, are named with the cure.
 $ for l in '[1]' '{"reech":1}' '{"reach":"far"}' '7' '[1,'; do echo "$l" | vpm-query --urdf arm.urdf --joints -; done
 2> vpm-query: error: standard input, line 1: there are 1 values for 2 movable joints; give one for each of reach, turn
