@@ -235,13 +235,87 @@ py::array array_of(const std::vector<SphereState>& states) {
                                    reinterpret_cast<const std::uint8_t*>(states.data()));
 }
 
+Result answer(Query& query, const Scene& scene, const Pose& at, std::span<const Pose> solids) {
+  return query.run(scene, at, solids);
+}
+Result answer(LevelQuery& query, const Scene& scene, const Pose& at, std::span<const Pose> solids) {
+  return query.run(scene, at, 0, solids);
+}
+Collides hit(Query& query, const Scene& scene, const Pose& at, double unseen_limit,
+             std::span<const Pose> solids) {
+  return query.collides(scene, at, unseen_limit, solids);
+}
+Collides hit(LevelQuery& query, const Scene& scene, const Pose& at, double unseen_limit,
+             std::span<const Pose> solids) {
+  return query.collides(scene, at, unseen_limit, 0, solids);
+}
+
+// Binds what Query and LevelQuery are asked at single poses.
+template <class Asked>
+void bind_single_poses(py::class_<ToolQuery<Asked>>& query_class, const py::object& collides_kind) {
+  using LockedQuery = ToolQuery<Asked>;
+  query_class
+      .def(
+          "run",
+          [](LockedQuery& self, const Scene& scene, const Numbers& pose, const py::object& solids) {
+            const Pose at = pose_of(pose);
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return self.ask([&](Asked& query) { return answer(query, scene, at, moved); });
+          },
+          py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
+          "Returns the vpm.Result of the first tool at a pose: 7 numbers tx ty tz qx qy qz qw, or "
+          "a matrix (4, 4) or (3, 4); tool to world, m.\n\nsolids: (S, 7) or (S, 4, 4), a pose "
+          "for each solid of the scene in the order of its bodies, mesh to world; without, they "
+          "are where they were made.\n\nRaises RefusedError for a pose that is not finite or not "
+          "rigid, for a tool that keeps no surface in a scene with solids, and where the boundary "
+          "of what is shared does not close; ArgumentError for another number of poses than of "
+          "solids.")
+      .def(
+          "collides",
+          [collides_kind](LockedQuery& self, const Scene& scene, const Numbers& pose,
+                          double unseen_limit, const py::object& solids) {
+            const Pose at = pose_of(pose);
+            const std::vector<Pose> moved = poses_of_solids(solids);
+            return collides_kind(static_cast<int>(self.ask(
+                [&](Asked& query) { return hit(query, scene, at, unseen_limit, moved); })));
+          },
+          py::arg("scene"), py::arg("pose"), py::arg("unseen_limit") = kUnseenLimit,
+          py::arg("solids") = py::none(),
+          (std::string("Returns whether the first tool is in the scene's solid at a pose: "
+                       "run(...).collides() sooner, in a thirtieth of the time where the tool is "
+                       "inside. Leaves states() and parts() unspecified.\n\n") +
+           kUnseenLimitIs +
+           "\nsolids: as for run().\n\nRaises what run() raises, and ArgumentError "
+           "for a limit out of range.")
+              .c_str())
+      .def(
+          "another",
+          [](LockedQuery& self) {
+            return std::make_unique<LockedQuery>(
+                self.tools, self.options, self.ask([](Asked& query) { return query.another(); }));
+          },
+          "Returns a query of the same tools and options for another thread, whose levels it "
+          "shares: threads with a query each do not wait for each other. Remembers no pose.")
+      .def(
+          "parts",
+          [](LockedQuery& self) { return self.ask([](Asked& query) { return query.parts(); }); },
+          "Returns a list with the vpm.Result that each body gave at the last single pose, in the "
+          "order of the scene's bodies. Their volumes, forces and torques add up to the answer.")
+      .def(
+          "contacts",
+          [](LockedQuery& self) { return self.ask([](Asked& query) { return query.contacts(); }); },
+          "Returns a list of vpm.Contact, the largest first: those of the last single pose. Their "
+          "volumes, forces and torques add up to the answer, in bits.");
+}
+
 void bind_single_query(py::module_& module, const py::object& collides_kind) {
   using LockedQuery = ToolQuery<Query>;
-  py::class_<LockedQuery>(
+  py::class_<LockedQuery> query_class(
       module, "Query",
       "How much of a tool is inside a scene's solid, and which wrench pushes it out (Kaluschke, "
       "Weller, Zachmann 2017). Threads that ask one query take turns; other Python threads run "
-      "meanwhile. The same input gives the same bits on every device, for any number of threads.")
+      "meanwhile. The same input gives the same bits on every device, for any number of threads.");
+  query_class
       .def(py::init([](const py::object& tools, const std::string& measure, std::uint32_t level,
                        const std::string& device, bool coherent, const std::string& shadows,
                        double stiffness, std::uint32_t contacts) {
@@ -266,57 +340,6 @@ void bind_single_query(py::module_& module, const py::object& collides_kind) {
            "none. On the CPU only.\n\nRaises ArgumentError for options out of range or that "
            "exclude each other, "
            "UnavailableError if the device is not there.")
-      .def(
-          "run",
-          [](LockedQuery& self, const Scene& scene, const Numbers& pose, const py::object& solids) {
-            const Pose at = pose_of(pose);
-            const std::vector<Pose> moved = poses_of_solids(solids);
-            return self.ask([&](Query& query) { return query.run(scene, at, moved); });
-          },
-          py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
-          "Returns the vpm.Result of the first tool at a pose: 7 numbers tx ty tz qx qy qz qw, or "
-          "a matrix (4, 4) or (3, 4); tool to world, m.\n\nsolids: (S, 7) or (S, 4, 4), a pose "
-          "for each solid of the scene in the order of its bodies, mesh to world; without, they "
-          "are where they were made.\n\nRaises RefusedError for a pose that is not finite or not "
-          "rigid, for a tool that keeps no surface in a scene with solids, and where the boundary "
-          "of what is shared does not close; ArgumentError for another number of poses than of "
-          "solids.")
-      .def(
-          "collides",
-          [collides_kind](LockedQuery& self, const Scene& scene, const Numbers& pose,
-                          double unseen_limit, const py::object& solids) {
-            const Pose at = pose_of(pose);
-            const std::vector<Pose> moved = poses_of_solids(solids);
-            return collides_kind(static_cast<int>(self.ask(
-                [&](Query& query) { return query.collides(scene, at, unseen_limit, moved); })));
-          },
-          py::arg("scene"), py::arg("pose"), py::arg("unseen_limit") = kUnseenLimit,
-          py::arg("solids") = py::none(),
-          (std::string("Returns whether the first tool is in the scene's solid at a pose: "
-                       "run(...).collides() sooner, in a thirtieth of the time where the tool is "
-                       "inside. Leaves states() and parts() unspecified.\n\n") +
-           kUnseenLimitIs +
-           "\nsolids: as for run().\n\nRaises what run() raises, and ArgumentError "
-           "for a limit out of range.")
-              .c_str())
-      .def(
-          "another",
-          [](LockedQuery& self) {
-            return std::make_unique<LockedQuery>(
-                self.tools, self.options, self.ask([](Query& query) { return query.another(); }));
-          },
-          "Returns a query of the same tools and options for another thread, whose levels it "
-          "shares: threads with a query each do not wait for each other. Remembers no pose.")
-      .def(
-          "parts",
-          [](LockedQuery& self) { return self.ask([](Query& query) { return query.parts(); }); },
-          "Returns a list with the vpm.Result that each body gave at the last single pose, in the "
-          "order of the scene's bodies. Their volumes, forces and torques add up to the answer.")
-      .def(
-          "contacts",
-          [](LockedQuery& self) { return self.ask([](Query& query) { return query.contacts(); }); },
-          "Returns a list of vpm.Contact, the largest first: those of the last single pose. Their "
-          "volumes, forces and torques add up to the answer, in bits.")
       .def(
           "run_batch",
           [](LockedQuery& self, const Scene& scene, const Numbers& poses, const py::object& tool,
@@ -356,6 +379,7 @@ void bind_single_query(py::module_& module, const py::object& collides_kind) {
             return self.ask([&](Query& query) { return query.level(tool); });
           },
           py::arg("tool") = 0, "Returns the number of spheres that are used of a tool.");
+  bind_single_poses(query_class, collides_kind);
 }
 
 const char* text_of(LevelReason reason) {
@@ -380,8 +404,11 @@ const char* text_of(LevelReason reason) {
 
 void bind_level_query(py::module_& module, const py::object& collides_kind) {
   using LockedQuery = ToolQuery<LevelQuery>;
-  py::class_<LockedQuery>(module, "LevelQuery",
-                          "A query at the level of detail that a request chooses.")
+  py::class_<LockedQuery> query_class(
+      module, "LevelQuery",
+      "A query at the level of detail that a request chooses: that of the moment. What collides() "
+      "is asked teaches a deadline nothing.");
+  query_class
       .def(py::init([](const Tool& tool, const Scene& scene, const Numbers& first_pose,
                        std::optional<double> max_error, std::optional<double> deadline_seconds,
                        bool for_scene, const std::string& measure, const std::string& device,
@@ -402,44 +429,6 @@ void bind_level_query(py::module_& module, const py::object& collides_kind) {
            "be.\ndeadline_seconds: time of each query; wins over the others.\nfor_scene: no "
            "spheres that the scene's points cannot resolve.\n\nRaises RefusedError if the tool has "
            "no calibration or no such level.")
-      .def(
-          "run",
-          [](LockedQuery& self, const Scene& scene, const Numbers& pose, const py::object& solids) {
-            const Pose at = pose_of(pose);
-            const std::vector<Pose> moved = poses_of_solids(solids);
-            return self.ask([&](LevelQuery& query) { return query.run(scene, at, 0, moved); });
-          },
-          py::arg("scene"), py::arg("pose"), py::arg("solids") = py::none(),
-          "Returns the vpm.Result at the level of the moment. solids: as for vpm.Query.run.")
-      .def(
-          "collides",
-          [collides_kind](LockedQuery& self, const Scene& scene, const Numbers& pose,
-                          double unseen_limit, const py::object& solids) {
-            const Pose at = pose_of(pose);
-            const std::vector<Pose> moved = poses_of_solids(solids);
-            return collides_kind(static_cast<int>(self.ask([&](LevelQuery& query) {
-              return query.collides(scene, at, unseen_limit, 0, moved);
-            })));
-          },
-          py::arg("scene"), py::arg("pose"), py::arg("unseen_limit") = kUnseenLimit,
-          py::arg("solids") = py::none(),
-          "Returns vpm.Collides at the level of the moment, as vpm.Query.collides(); a deadline "
-          "learns nothing.")
-      .def(
-          "another",
-          [](LockedQuery& self) {
-            return std::make_unique<LockedQuery>(
-                self.tools, self.options, self.ask([](auto& query) { return query.another(); }));
-          },
-          "Returns a query for another thread, at the level of this one.")
-      .def(
-          "parts",
-          [](LockedQuery& self) { return self.ask([](auto& query) { return query.parts(); }); },
-          "Returns what each body gave at the last run, as vpm.Query.parts().")
-      .def(
-          "contacts",
-          [](LockedQuery& self) { return self.ask([](auto& query) { return query.contacts(); }); },
-          "Returns the contacts of the last run, as vpm.Query.contacts().")
       .def_property_readonly(
           "level", [](LockedQuery& self) { return self.ask([](auto& q) { return q.level(); }); },
           "Number of spheres of the level last used.")
@@ -451,6 +440,7 @@ void bind_level_query(py::module_& module, const py::object& collides_kind) {
           "reason",
           [](LockedQuery& self) { return text_of(self.ask([](auto& q) { return q.reason(); })); },
           "Which part of the request chose the level.");
+  bind_single_poses(query_class, collides_kind);
 }
 
 void bind_setup_check(py::module_& module) {
