@@ -16,6 +16,8 @@
 #include <cstring>
 #include <iostream>
 #include <map>
+#include <sstream>
+#include <string_view>
 
 #include "libvpm/core/error.h"
 #include "tools/common/error_text.h"
@@ -25,6 +27,7 @@
 namespace vpm::tools {
 namespace {
 
+constexpr const char* kVisibleGpus = "CUDA_VISIBLE_DEVICES";
 constexpr int kFirstAnswer = 10;  // exit codes from here on are answers of a run that did its job
 
 // How a run of the program ended, and the lines that it said.
@@ -48,15 +51,24 @@ int memory_file(const char* name, unsigned flags) {
 // A process of the program.
 class Run {
  public:
-  explicit Run(const std::string& configuration) : said_(memory_file("said", MFD_CLOEXEC)) {
+  // Starts it with options, and on a GPU by its name in CUDA_VISIBLE_DEVICES; "": with all.
+  Run(const std::string& configuration, const std::string& gpu)
+      : said_(memory_file("said", MFD_CLOEXEC)) {
     const int options = memory_file("options", 0);
     if (::write(options, configuration.data(), configuration.size()) !=
         static_cast<ssize_t>(configuration.size()))
       refuse(std::string("no process can be started: ") + std::strerror(errno));
     const std::string path = "/proc/self/fd/" + std::to_string(options);
+    std::string visible = kVisibleGpus + ("=" + gpu);
+    std::vector<char*> environment;
+    for (char** one = environ; *one != nullptr; ++one)
+      if (gpu.empty() || !std::string_view(*one).starts_with(kVisibleGpus + std::string("=")))
+        environment.push_back(*one);
+    if (!gpu.empty()) environment.push_back(visible.data());
+    environment.push_back(nullptr);
     const pid_t parent = ::getpid();
     process_ = ::fork();
-    if (process_ == 0) become(path.c_str(), parent);
+    if (process_ == 0) become(path.c_str(), parent, environment.data());
     ::close(options);
     if (process_ < 0) refuse(std::string("no process can be started: ") + std::strerror(errno));
   }
@@ -78,20 +90,36 @@ class Run {
 
  private:
   // Calls only what a process may call after fork() that had other threads.
-  [[noreturn]] void become(const char* options, pid_t parent) const {
+  [[noreturn]] void become(const char* options, pid_t parent, char** environment) const {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // the run does not outlive the list's
     if (::getppid() != parent) ::_exit(1);
     const int nothing = ::open("/dev/null", O_RDWR);
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(nothing, STDOUT_FILENO);
     ::dup2(said_, STDERR_FILENO);
-    ::execl("/proc/self/exe", program_invocation_name, "--config", options, nullptr);
+    ::execle("/proc/self/exe", program_invocation_name, "--config", options, nullptr, environment);
     ::_exit(127);
   }
 
   int said_;
   pid_t process_ = -1;
 };
+
+// Returns the GPUs that runs are spread over, as CUDA_VISIBLE_DEVICES names them: none where there
+// is one at most, or where --device says more than that a GPU is wanted.
+std::vector<std::string> gpus_for(const Program& program) {
+  const std::string& device = program.common().device;
+  if (!program.can_use_devices() || (device != "auto" && device != "cuda")) return {};
+  std::vector<std::string> gpus;
+  if (const char* const visible = std::getenv(kVisibleGpus)) {
+    std::istringstream names(visible);
+    for (std::string name; std::getline(names, name, ',');) gpus.push_back(name);
+  } else {
+    for (int k = 0; k < cuda_device_count(); ++k) gpus.push_back(std::to_string(k));
+  }
+  if (gpus.size() < 2) gpus.clear();
+  return gpus;
+}
 
 // Returns the last error that a run said, or how else it ended.
 std::string fault_of(const Ended& ended) {
@@ -110,6 +138,7 @@ class ListRun {
       : program_(program),
         entries_(std::move(entries)),
         faults_(entries_.size()),
+        gpus_(gpus_for(program)),
         progress_("inputs", program.common()) {
     const int threads = thread_count();
     jobs_ = static_cast<std::size_t>(a.jobs > 0 ? a.jobs : threads);
@@ -152,6 +181,7 @@ class ListRun {
     Run run;
     std::size_t entry;
     Outputs before;
+    std::string gpu;
   };
 
   // Keeps the fault of an entry, which harms no other.
@@ -177,8 +207,17 @@ class ListRun {
     nlohmann::json options = entries_[k].options;
     options["threads"] = threads_;
     options["force"] = before != Outputs::none;
-    Run run(options.dump());
-    runs_.emplace(run.process(), Started{run, k, before});
+    const std::string gpu = next_gpu();
+    Run run(options.dump(), gpu);
+    runs_.emplace(run.process(), Started{run, k, before, gpu});
+  }
+
+  // Returns the GPU that the fewest runs have; "" where there are not several.
+  std::string next_gpu() const {
+    const auto runs_on = [&](const std::string& gpu) {
+      return std::ranges::count_if(runs_, [&](const auto& run) { return run.second.gpu == gpu; });
+    };
+    return gpus_.empty() ? "" : *std::ranges::min_element(gpus_, {}, runs_on);
   }
 
   void wait_for_one() {
@@ -230,6 +269,7 @@ class ListRun {
   std::vector<ListEntry> entries_;
   std::vector<std::string> faults_;  // of each entry; empty for those that are done
   std::vector<ListRecord> records_;
+  std::vector<std::string> gpus_;
   Progress progress_;
   Hashes hashes_;
   std::map<pid_t, Started> runs_;

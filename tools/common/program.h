@@ -38,6 +38,7 @@ class Program {
   // Accepts --device cuda, which is refused otherwise. To be called before run() if the program
   // asks for device().
   void computes_on_devices() { on_devices_ = true; }
+  bool can_use_devices() const { return on_devices_; }
   // Returns the device that --device names. Throws Error(unavailable) if this machine lacks it.
   Device device() const { return device_from_text(common_.device); }
 

@@ -55,6 +55,11 @@ $ done_of() { ls -A $1 2>&- | grep -c '^[.].*[.]done$'; }; bash many.sh cut & fo
 $ sleep 0.3; bash many.sh cut > said; tail -n 1 said | awk '{ print $1, ($2 >= 3), $2 + $3, $4, $5 }'; diff -r cut many
 60 1 60 0 0
 
+# Runs at a time are spread over the GPUs that are to be seen, here two that no machine has.
+$ CUDA_VISIBLE_DEVICES=vpm-a,vpm-b bash many.sh gpus > said & for k in $(seq 3000); do cat /proc/[0-9]*/environ 2>&- | tr '\0' '\n' | grep -x 'CUDA_VISIBLE_DEVICES=vpm-[ab]' >> seen; [ $(sort -u seen | wc -l) -eq 2 ] && break; done; wait; sort -u seen; diff -r gpus many
+CUDA_VISIBLE_DEVICES=vpm-a
+CUDA_VISIBLE_DEVICES=vpm-b
+
 # What happens to one input harms no other.
 $ printf 'nothing' > a/broken.png; echo a/broken.png >> frames.txt; echo a/missing.png >> frames.txt; bash normals.sh
   inputs   there    made    anew  failed   seconds  per second
