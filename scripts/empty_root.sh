@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# empty_root.sh [--device-code] [COMMAND ...]: runs commands in an empty Debian 12, to show that this repository needs
-# nothing that happens to be installed here. By default the two commands of the README.
+# empty_root.sh [--device-code] [COMMAND ...] [--bare COMMAND ...]: runs commands in an empty Debian 12, to show that this repository
+# needs nothing that happens to be installed here. By default the two commands of the README.
 #
 # Makes a root with mmdebstrap, or debootstrap where that is missing or fails, copies the last commit into it and ../shared beside it where that exists, and runs each
 # COMMAND (a line of shell) in the copy. --device-code then lends the root this machine's CUDA, where it has one, and builds
 # the device code. VPM_CCACHE=FOLDER lends the root a cache of compilers (FOLDER is made), which a COMMAND uses that installs
-# ccache. VPM_PACKAGES=FOLDER copies the Debian packages there to /packages in the root. Needs root, git, one
-# of the two and the right to mount.
+# ccache. VPM_PACKAGES=FOLDER copies the Debian packages there to /packages in the root. Commands after --bare run in another
+# root, which is as the first one was before any command, has the packages of its build/release/packages in /packages, and what it
+# has downloaded. Needs root, git, one of the two and the right to mount.
 #
 # Exit status: 77 where such a root cannot be made here, 1 where a command fails, 0 otherwise. The root is removed in any
 # case. Mounts are made in a namespace of their own and so end with its processes, also when these are killed.
@@ -82,6 +83,21 @@ run() {
   echo "== $command: good, $((SECONDS - start)) s"
 }
 
+# Keeps a copy of a root in its folder bare, without what is mounted in it.
+keep_bare() {
+  mkdir "$1/bare"
+  tar -C "$1" --one-file-system --exclude=./bare -cf - . | tar -C "$1/bare" -xf -
+}
+
+# Completes the copy by what the commands in the root have left for it.
+furnish_bare() {
+  local root=$1 folder
+  mount -t proc proc "$root/bare/proc"
+  for folder in var/cache/apt var/lib/apt/lists; do mount --bind "$root/$folder" "$root/bare/$folder"; done
+  mkdir -p "$root/bare/packages"
+  cp "$root/src/vpm/build/release/packages/"*.deb "$root/bare/packages/"
+}
+
 # Builds the device code and its tests, with the CUDA of this machine.
 build_device_code() {
   local root=$1 nvcc cuda
@@ -102,7 +118,18 @@ if [[ ${1:-} == --inside ]]; then  # this script, called by itself
   root=$2 device_code=$3 repository=$4
   shift 4
   fill "$root" "$repository"
-  for command in "$@"; do run "$root" "$command"; done
+  current=$root
+  for command in "$@"; do
+    if [[ $command == --bare ]]; then keep_bare "$root"; fi
+  done
+  for command in "$@"; do
+    if [[ $command != --bare ]]; then
+      run "$current" "$command"
+      continue
+    fi
+    furnish_bare "$root"
+    current=$root/bare
+  done
   if [[ $device_code == yes ]]; then build_device_code "$root"; fi
   exit
 fi
