@@ -29,6 +29,15 @@ bootstrap() {
   timeout 900 debootstrap --variant=minbase bookworm "$root"
 }
 
+# Mounts what programs expect in a root: processes, and pseudo-terminals, for what asks whether somebody sits before it; its tests are
+# skipped without.
+mount_in() {
+  local root=$1
+  mount -t proc proc "$root/proc" || return
+  mkdir -p "$root/dev/pts"
+  if mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"; then ln -sf pts/ptmx "$root/dev/ptmx"; fi
+}
+
 # Fills the root with an empty Debian and the copy. Runs in the namespaces.
 fill() {
   local root=$1 repository=$2
@@ -42,10 +51,7 @@ fill() {
     cannot "no Debian could be unpacked; the end of what was said stands above"
   fi
   chmod 755 "$root"  # as on a machine: other users than root may enter
-  mount -t proc proc "$root/proc" || cannot "$root/proc cannot be mounted"
-  # Pseudo-terminals, for what asks whether somebody sits before it; its tests are skipped without.
-  mkdir -p "$root/dev/pts"
-  if mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"; then ln -sf pts/ptmx "$root/dev/ptmx"; fi
+  mount_in "$root" || cannot "$root/proc cannot be mounted"
   # Packages unpack faster without syncing, for the root does not outlive this script, and without what nobody reads here
   # but vpm's own examples, which debian_packages.sh builds.
   printf '%s\n' force-unsafe-io path-exclude=/usr/share/{doc,man,locale}/'*' 'path-include=/usr/share/doc/vpm/*' >"$root/etc/dpkg/dpkg.cfg.d/fast"
@@ -92,7 +98,7 @@ keep_bare() {
 # Completes the copy by what the commands in the root have left for it.
 furnish_bare() {
   local root=$1 folder
-  mount -t proc proc "$root/bare/proc"
+  mount_in "$root/bare"
   for folder in var/cache/apt var/lib/apt/lists; do mount --bind "$root/$folder" "$root/bare/$folder"; done
   mkdir -p "$root/bare/packages"
   cp "$root/src/vpm/build/release/packages/"*.deb "$root/bare/packages/"
