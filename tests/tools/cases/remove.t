@@ -66,6 +66,7 @@ $ vpm-query --tool cube.vpmg --frames tum --poses path.txt --intrinsics 60,60,31
 2> vpm-query: note: 4 steps in * s, * times real time; latency * us median, * us p99, * us longest; 4 frames used (glob)
 $ python3 least.py < removed.jsonl && $VALIDATE query-result removed.jsonl
 4 0.0 0.0 0.0 0.0
+$ vpm-query --tool cube.vpmg --frames tum --poses path.txt --intrinsics 60,60,31.5,23.5 --rate 30 --remove tool.jsonl --quiet -o kept.jsonl && cmp kept.jsonl removed.jsonl
 $ vpm-query --tool cube.vpmg --frames tum --poses path.txt --intrinsics 60,60,31.5,23.5 --rate 30 --remove tool.jsonl --remove-margin time=0.02,calibration=0.005 2>&1 > wide.jsonl | grep remove
 vpm-query: note: --remove: 1628 pixels removed from 4 images, with a margin of up to 0.025 m, of 0.02 s at the speed of each solid, and 0.005 m of calibration
 $ vpm-query --tool cube.vpmg --frames tum --poses path.txt --intrinsics 60,60,31.5,23.5 --rate 30 --remove tool.jsonl --quiet --threads 1 --realtime | cmp - removed.jsonl
