@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Packs and exports meshes of real links through a URDF that is written here.
+"""Packs and exports meshes of real links through a URDF that is written here, and asks what they share.
 
     robot_links_test.py --bin DIR[:DIR...] MESHES
 
@@ -60,6 +60,27 @@ def spheres_of(path):
     return spheres
 
 
+def faults_of_poses(folder, meshes, run):
+    """Yields what is wrong where a link slides and another turns: what they share must be what their meshes share at these poses."""
+    mesh, slide, turn = meshes / LINKS["forearm"][0], 0.05, 0.7
+    links = "".join(f'<link name="{name}">{geometry}</link>' for name, geometry in (
+        ("first", f'<collision><geometry><mesh filename="{mesh}"/></geometry></collision>'), ("between", ""),
+        ("last", f'<collision><origin xyz="0 0 0.1"/><geometry><mesh filename="{mesh}"/></geometry></collision>')))
+    (folder / "two.urdf").write_text(f"""<robot name="two">{links}
+<joint name="slide" type="prismatic"><parent link="first"/><child link="between"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+<joint name="turn" type="continuous"><parent link="between"/><child link="last"/><axis xyz="0 0 1"/></joint></robot>""")
+    (folder / "none.srdf").write_text('<robot name="two"/>')
+    (folder / "joints.jsonl").write_text(json.dumps({"slide": slide, "turn": turn}))
+    run("vpm-query", "--urdf", "two.urdf", "--joints", "joints.jsonl", "--srdf", "none.srdf", "-o", "robot.jsonl", "--quiet")
+    poses = [[0, 0, 0, 0, 0, 0, 1], [slide, 0, 0.1, 0, 0, math.sin(turn / 2), math.cos(turn / 2)]]
+    (folder / "two.json").write_text(json.dumps({"parts": [
+        {"name": name, "mesh": str(mesh), "pose": pose} for name, pose in zip(("first", "last"), poses)]}))
+    run("vpm-query", "--pairs", "two.json", "-o", "pairs.jsonl", "--quiet")
+    robot, pairs = (json.loads((folder / name).read_text()) for name in ("robot.jsonl", "pairs.jsonl"))
+    if not 1e-4 < pairs["volume"] or abs(robot["self_volume"] - pairs["volume"]) > 1e-9 * pairs["volume"]:
+        yield f"links share {robot['self_volume']} m³, their meshes {pairs['volume']} m³"
+
+
 def faults_in(folder, meshes, run):
     """Yields what is wrong."""
     (folder / "real.urdf").write_text(urdf(meshes))
@@ -73,6 +94,7 @@ def faults_in(folder, meshes, run):
             if all(math.dist(place, s[:3]) > s[3] for s in of_link):
                 yield f"{link['link']}: {place} lies in no sphere"
                 break
+    yield from faults_of_poses(folder, meshes, run)
     formats = {"csv": 0, "yml": "radius", "xrdf": "radius", "srdf": "radius=", "urdf": "<sphere radius="}
     run("vpm-pack", "--urdf", "real.urdf", "--robot-spheres", IN_ALL, *(word for name in formats for word in ("--export", f"all.{name}")),
         "--report", "all.json", "--quiet")
