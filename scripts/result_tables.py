@@ -236,6 +236,16 @@ def packing_smooth(report):
                   "× the capsule", "certified"], rows)
 
 
+def packing_fit(report):
+    of = {(r["shape"], r["spheres"], r["method"]): r for r in report["results"] if r["part"] == "fit"}
+    shapes, counts = dict.fromkeys(shape for shape, _, _ in of), sorted({spheres for _, spheres, _ in of})
+    cell = lambda r: f"{r['protrusion']:.2f} / {r['max_protrusion']:.2f}"
+    inside = lambda r: f"{r['coverage']:.2f}"
+    return table(["solid"] + [f"{n} inside: covered" for n in counts] + [f"{n} that hold it: outside / reach" for n in counts] + ["proven"],
+                 [[shape] + [inside(of[shape, n, "greedy"]) for n in counts] + [cell(of[shape, n, "outer"]) for n in counts]
+                  + ["yes" if all(r["certified"] for (name, *_), r in of.items() if name == shape) else "no"] for shape in shapes])
+
+
 def median_and_p99(r):
     return f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
 
@@ -380,6 +390,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
              "packing cost": (packing_cost, "packing"), "packing smooth": (packing_smooth, "packing_smooth"),
+             "packing fit": (packing_fit, "packing_fit"),
              "replay": (replay, "replay"),
              "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
