@@ -11,7 +11,7 @@ python=/usr/bin/python3
 packages=(
   g++ cmake ninja-build
   libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
-  libtiff-dev libyaml-cpp-dev
+  libtiff-dev libyaml-cpp-dev liblz4-dev libzstd-dev
   libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
   libglu1-mesa-dev libassimp-dev libexpat1-dev liburdfdom-dev
   libjs-three python3

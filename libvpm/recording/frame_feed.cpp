@@ -39,7 +39,7 @@ ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options
   ImportOptions of_frame = options;
   if (frame.camera) of_frame.to_world = frame.camera;
   of_frame.time = frame.time;
-  return import_scan(file::read_all(frame.path), frame.path, of_frame);
+  return import_scan(bytes_of(frame), frame.path, of_frame);
 }
 
 void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {

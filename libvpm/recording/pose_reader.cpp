@@ -74,12 +74,31 @@ Pose only_pose(const std::string& path, double* deviation) {
   return *pose;
 }
 
+// Returns the poses that the path names in a recording, if it names some.
+std::optional<mcap::Poses> recorded_poses(const std::string& path) {
+  const auto name = path == "-" ? std::nullopt : mcap::poses_name(path);
+  return name ? mcap::read_poses(*name) : std::nullopt;
+}
+
 }  // namespace
 
-PoseReader::PoseReader(const std::string& path)
+PoseReader::PoseReader(const std::string& path) : PoseReader(path, recorded_poses(path)) {}
+
+PoseReader::PoseReader(const std::string& name, mcap::Poses poses)
+    : PoseReader(name, std::optional(std::move(poses))) {}
+
+PoseReader::PoseReader(const std::string& path, std::optional<mcap::Poses> poses)
     : name_(path == "-" ? "standard input" : path),
-      stream_(path == "-" ? std::cin : file_),
+      stream_(poses         ? static_cast<std::istream&>(recorded_)
+              : path == "-" ? std::cin
+                            : file_),
       lines_(stream_) {
+  if (poses) {
+    recorded_.str(std::move(poses->lines));
+    world_ = std::move(poses->world);
+    remarks_ = std::move(poses->remarks);
+    return;
+  }
   std::error_code fault;
   may_wait_ = !std::filesystem::is_regular_file(path == "-" ? "/dev/stdin" : path, fault);
   if (path == "-") return;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <istream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/file/npy.h"
 #include "libvpm/file/text.h"
+#include "libvpm/import/remark.h"
+#include "libvpm/recording/mcap/recorded.h"
 #include "libvpm/recording/pose_parser.h"
 
 namespace vpm {
@@ -35,6 +38,7 @@ struct PoseLines {
 //   matrix text  four lines of four numbers for each pose, or three for each pose of the file
 //   NPY          an array of matrices, N x 4 x 4 or N x 3 x 4, or of N x 7 numbers, or 8 with the
 //                time first
+//   MCAP         poses in a recording of ROS 2, as mcap/recorded.h names them: "rec.mcap:/topic"
 // Texts are in UTF-8, or in UTF-16 with its mark. A '#' starts a comment, except in a line of JSON.
 // A line of names, in a comment or first in the file, tells the order of the numbers after it;
 // otherwise quaternions end in w. Words beside the names are passed over; a comment that seems to
@@ -43,6 +47,8 @@ struct PoseLines {
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" reads standard input
+  // Reads poses that were found in a recording already; `name` is for messages.
+  PoseReader(const std::string& name, mcap::Poses poses);
 
   // Returns the next pose; empty at the end. Throws Error(refused), naming the line, if it is no
   // pose or the file cannot be read.
@@ -69,6 +75,10 @@ class PoseReader {
   // True if the last line that was read has numbers that are not finite, or only zeros, which
   // trackers write where they are lost. Also after next() has refused it.
   bool is_undefined() const { return parser_.is_undefined(); }
+  // Returns the path, and of MCAP the frame that the poses are in, and what is said of the file.
+  const std::string& name() const { return name_; }
+  const std::string& world() const { return world_; }
+  const Remarks& remarks() const { return remarks_; }
   // Returns the name and line of the last pose, for messages.
   std::string place() const;
   // Throws Error(refused) that there is no pose.
@@ -101,8 +111,12 @@ class PoseReader {
   // Adds the lines of a matrix after its first.
   void add_rows(std::vector<double>& numbers);
 
-  std::string name_;
+  PoseReader(const std::string& path, std::optional<mcap::Poses> poses);
+
+  std::string name_, world_;
+  Remarks remarks_;
   std::ifstream file_;
+  std::istringstream recorded_;  // of MCAP
   std::istream& stream_;
   int fault_ = 0;          // errno of what failed
   bool may_wait_ = false;  // it is no regular file

@@ -11,6 +11,8 @@
 #include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/mcap/mcap_file.h"
+#include "libvpm/recording/mcap/recorded.h"
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/recording/timed_path.h"
 
@@ -180,34 +182,18 @@ void refuse_if_frames_lie_below(const fs::path& folder) {
          folder.string(), "give `frames` " + first.string());
 }
 
-// Refuses a folder that is a bag of ROS 2, or that holds one.
+// Refuses a folder that is a bag of ROS, or that holds one.
 void refuse_if_bag(const fs::path& folder) {
   std::error_code fault;
   for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
        entry.increment(fault)) {
     const fs::path ending = entry->path().extension();
-    if (ending == ".bag" || ending == ".mcap" || ending == ".db3")
-      refuse("no frames in it, but a recording of ROS, " + entry->path().filename().string(),
-             folder.string(), "extract its depth images first");
+    if (ending != ".bag" && ending != ".db3") continue;
+    const std::string from = ending == ".bag" ? entry->path().string() : folder.string();
+    refuse("no frames in it, but a recording of ROS, " + entry->path().filename().string(),
+           folder.string(),
+           "convert it to MCAP: rosbags-convert --src " + from + " --dst OUT --dst-storage mcap");
   }
-}
-
-void read_folder(const fs::path& folder, double frame_rate, Recording& recording) {
-  for (const char* list : {"depth.txt", "associations.txt"}) {
-    if (is_file(folder / list)) return read_list(folder / list, recording);
-  }
-  const std::vector<fs::path> files = files_of(folder);
-  if (files.empty()) refuse_if_frames_lie_below(folder);
-  if (files.empty()) refuse_if_bag(folder);
-  if (files.empty())
-    refuse("no frames in it", folder.string(),
-           "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd, .ply or .vpmc files, or depth.txt "
-           "with \"time file\" lines");
-  const bool timed = std::all_of(files.begin(), files.end(),
-                                 [](const fs::path& path) { return time_in(path).has_value(); });
-  if (!timed) return number_frames(files, frame_rate, recording);
-  for (const fs::path& path : files)
-    recording.frames.push_back({*time_in(path), path.string(), {}, false});
 }
 
 bool are_all_lost(const Recording& recording) {
@@ -229,8 +215,8 @@ bool are_all_lost(const Recording& recording) {
              : "numbered frames begin at 0 s; give a pose without a time for each frame");
 }
 
-void place_by_path(const std::string& name, Recording& recording) {
-  PoseReader reader(name);
+void place_by_path(PoseReader& reader, Recording& recording) {
+  const std::string& name = reader.name();
   const TimedPath path(reader, UndefinedPoses::skipped);
   if (path.solids() > 0)
     refuse("\"solids\" do not move with the camera", reader.place(), "give them with the tool's");
@@ -238,7 +224,8 @@ void place_by_path(const std::string& name, Recording& recording) {
   recording.camera_source = name;
   recording.camera_undefined = path.undefined();
   recording.camera_doubled = path.doubled();
-  if (!path.has_times() && path.poses().size() != recording.frames.size())
+  const bool is_fixed = !path.has_times() && path.poses().size() == 1 && !reader.world().empty();
+  if (!path.has_times() && !is_fixed && path.poses().size() != recording.frames.size())
     refuse(std::to_string(path.poses().size()) + " poses without times for " +
                std::to_string(recording.frames.size()) + " frames",
            name, "give one for each, or times");
@@ -249,8 +236,8 @@ void place_by_path(const std::string& name, Recording& recording) {
           frame.time < path.start() - kPoseTolerance || frame.time > path.end() + kPoseTolerance;
       if (!frame.is_lost) frame.camera = path.at(frame.time);
     } else {
-      frame.is_lost = path.is_undefined(k);
-      if (!frame.is_lost) frame.camera = path.poses()[k];
+      frame.is_lost = path.is_undefined(is_fixed ? 0 : k);
+      if (!frame.is_lost) frame.camera = path.poses()[is_fixed ? 0 : k];
     }
   }
   if (path.has_times() && are_all_lost(recording)) refuse_other_times(path, name, recording);
@@ -260,6 +247,49 @@ void place_by_path(const std::string& name, Recording& recording) {
   };
   if (gap && std::any_of(recording.frames.begin(), recording.frames.end(), is_within))
     recording.camera_gap = gap;
+}
+
+// Takes the images of MCAP, and their camera.
+void take_mcap(const std::string& path, const RecordingOptions& options, Recording& recording) {
+  mcap::Frames read = mcap::read_frames(path, options.topic);
+  for (mcap::Frame& frame : read.frames)
+    recording.frames.push_back(
+        {frame.time, path + "/" + frame.name, {}, false, std::move(frame.read)});
+  recording.intrinsics = std::move(read.intrinsics);
+  recording.intrinsics_source = path + ":" + read.camera_info;
+  recording.no_intrinsics = read.no_intrinsics;
+  recording.remarks = std::move(read.remarks);
+  if (options.topic.empty())
+    recording.remarks.push_back({false, "its only topic of depth images is " + read.topic});
+  if (options.camera || !options.camera_poses.empty() || read.camera_frame.empty()) return;
+  const std::optional<mcap::Poses> poses =
+      mcap::read_poses({path, {}, options.world, read.camera_frame}, true);
+  if (!poses) return;
+  PoseReader reader(path + ":" + poses->world + ":" + read.camera_frame, *poses);
+  place_by_path(reader, recording);
+  recording.remarks.push_back({false, "the world is the frame " + poses->world +
+                                          " of TF, which has the poses of the camera, " +
+                                          read.camera_frame});
+}
+
+void read_folder(const fs::path& folder, const RecordingOptions& options, Recording& recording) {
+  for (const char* list : {"depth.txt", "associations.txt"}) {
+    if (is_file(folder / list)) return read_list(folder / list, recording);
+  }
+  const std::vector<fs::path> files = files_of(folder);
+  if (files.empty() && !mcap::files_of(folder.string()).empty())
+    return take_mcap(folder.string(), options, recording);
+  if (files.empty()) refuse_if_frames_lie_below(folder);
+  if (files.empty()) refuse_if_bag(folder);
+  if (files.empty())
+    refuse("no frames in it", folder.string(),
+           "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd, .ply or .vpmc files, or depth.txt "
+           "with \"time file\" lines");
+  const bool timed = std::all_of(files.begin(), files.end(),
+                                 [](const fs::path& path) { return time_in(path).has_value(); });
+  if (!timed) return number_frames(files, options.frame_rate, recording);
+  for (const fs::path& path : files)
+    recording.frames.push_back({*time_in(path), path.string(), {}, false});
 }
 
 // Returns the file of a frame's pose: beside it, or as ScanNet has it in pose/ beside its folder.
@@ -299,7 +329,8 @@ void place_by_files(Recording& recording) {
 void place_cameras(const fs::path& folder, const RecordingOptions& options, Recording& recording) {
   const auto& frames = recording.frames;
   if (!options.camera_poses.empty()) {
-    place_by_path(options.camera_poses, recording);
+    PoseReader reader(options.camera_poses);
+    place_by_path(reader, recording);
   } else if (options.camera) {
     for (RecordedFrame& frame : recording.frames) frame.camera = options.camera;
   } else if (std::any_of(frames.begin(), frames.end(), [](const RecordedFrame& frame) {
@@ -307,12 +338,14 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
              })) {
     place_by_files(recording);
   } else if (recording.has_clock && is_file(folder / "groundtruth.txt")) {
-    place_by_path((folder / "groundtruth.txt").string(), recording);
+    PoseReader reader((folder / "groundtruth.txt").string());
+    place_by_path(reader, recording);
   }
 }
 
 void read_intrinsics(const fs::path& path, Recording& recording) {
   if (!is_file(path)) return;
+  recording.intrinsics_source = path.string();
   recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string());
 }
 
@@ -322,19 +355,40 @@ bool is_ready_cloud(const RecordedFrame& frame) {
   return file::in_lower_case(fs::path(frame.path).extension().string()) == ".vpmc";
 }
 
+std::vector<std::byte> bytes_of(const RecordedFrame& frame) {
+  if (!frame.read) return file::read_all(frame.path);
+  try {
+    return frame.read();
+  } catch (const Error& fault) {
+    throw Error(fault.kind(), fault.problem(), frame.path, fault.hint());
+  }
+}
+
+std::string stem_of(const RecordedFrame& frame) {
+  const fs::path path(frame.path);
+  return frame.read ? path.filename().string() : path.stem().string();
+}
+
 Recording read_recording(const std::string& path, const RecordingOptions& options) {
   const bool is_folder = fs::is_directory(status_of(path));
   const fs::path folder = is_folder ? fs::path(path) : fs::path(path).parent_path();
   Recording recording;
-  if (is_folder) {
-    read_folder(folder, options.frame_rate, recording);
+  if (!is_folder && !mcap::files_of(path).empty()) {
+    take_mcap(path, options, recording);
+  } else if (is_folder) {
+    read_folder(folder, options, recording);
   } else {
     read_list(path, recording);
   }
   std::stable_sort(recording.frames.begin(), recording.frames.end(),
                    [](const auto& a, const auto& b) { return a.time < b.time; });
-  place_cameras(folder, options, recording);
-  if (is_folder) read_intrinsics(folder / "camera-intrinsics.txt", recording);
+  const bool is_mcap = static_cast<bool>(recording.frames.front().read);
+  if (!is_mcap && !options.topic.empty())
+    throw Error(ErrorKind::invalid_argument, "`topic` is for recordings in MCAP: leave it out",
+                path);
+  if (!is_mcap || !options.camera_poses.empty() || options.camera)
+    place_cameras(folder, options, recording);
+  if (is_folder && !is_mcap) read_intrinsics(folder / "camera-intrinsics.txt", recording);
   return recording;
 }
 

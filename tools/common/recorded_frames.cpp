@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "libvpm/core/error.h"
 #include "libvpm/recording/frame_schedule.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
@@ -11,15 +12,19 @@ namespace {
 
 void take_intrinsics(const Program& program, const std::string& path, const Recording& recording,
                      ImportOptions& import) {
-  if (import.intrinsics || !recording.intrinsics) return;
+  if (import.intrinsics) return;
+  if (!recording.no_intrinsics.empty())
+    refuse(recording.no_intrinsics, path, "give `intrinsics` fx,fy,cx,cy of its camera");
+  if (!recording.intrinsics) return;
   const IntrinsicsFile& file = *recording.intrinsics;
-  const std::string name = path + "/camera-intrinsics.txt";
+  const std::string& name = recording.intrinsics_source;
   import.intrinsics = file.intrinsics;
+  import.calibrated_width = file.width;
+  import.calibrated_height = file.height;
   say(program, name, file.remarks);
   say(program, name, unused_factor(file.factor, import.depth.units_per_metre));
   check_intrinsics(*import.intrinsics);
-  program.note("intrinsics " + intrinsics_text(*import.intrinsics) +
-               " are read from camera-intrinsics.txt in " + path);
+  program.note("intrinsics " + intrinsics_text(*import.intrinsics) + " are read from " + name);
 }
 
 void warn_of_improbable_times(const Program& program, const Recording& recording) {
@@ -51,6 +56,7 @@ Recording open_recording(const Program& program, const std::string& path,
 
 void note_recording(const Program& program, const std::string& path, const Recording& recording,
                     const ImportOptions& import) {
+  say(program, path, recording.remarks);
   if (!recording.camera_source.empty()) {
     program.detail("poses of the camera: " + recording.camera_source);
   } else if (!is_ready_cloud(recording.frames.front())) {

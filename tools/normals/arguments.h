@@ -17,6 +17,7 @@ namespace vpm::tools {
 
 struct Arguments {
   std::string depth, output, report, export_path, view;
+  std::string topic, at;            // of a recording in MCAP; which image
   std::string camera_poses;         // of a recording
   double frame_rate = 30;           // frames per second of a recording whose names have numbers
   std::vector<std::string> remove;  // solids, each FILE or FILE@POSE
@@ -44,6 +45,16 @@ nlohmann::json provenance_of(const Program& program, const ImportOptions& option
 
 // True if the input is a recording: a folder, or a list of frames whose output is a folder.
 bool is_recording(const Arguments& arguments);
+
+// The file that becomes a cloud: its name and bytes.
+struct Source {
+  std::string name;
+  std::vector<std::byte> bytes;
+};
+
+// Reads the input that is no recording, or one image of a recording in MCAP, with whose camera and
+// time `options` are completed, which is noted. Throws Error where it cannot.
+Source source_of(const Program& program, const Arguments& arguments, ImportOptions& options);
 
 // Makes a cloud of each frame of a recording, in the folder of the output. A frame that cannot be
 // used is left out with a warning. Throws Error if none can be used, if an option is given that

@@ -13,6 +13,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
+#include "libvpm/recording/mcap/mcap_file.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
@@ -29,7 +30,7 @@ namespace {
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("depth", a.depth,
                  "Depth image (16-bit PNG, OpenEXR, TIFF, PGM, PFM, NPY) or cloud (PCD, PLY); - is "
-                 "standard input. Or a recording: a folder of such files");
+                 "standard input. Or a recording: a folder of such files, or an MCAP of ROS 2");
   begin_group(app, "Outputs");
   app.add_option("-o,--output", a.output,
                  "Cloud to write (.vpmc); - is standard output. For a recording, the folder of its "
@@ -55,9 +56,16 @@ void declare(CLI::App& app, Arguments& a) {
       ->join(',')
       ->option_text("M or ERRORS");
   begin_group(app, "Recordings", Group::rare);
+  app.add_option("--topic", a.topic,
+                 "Topic of the depth images of a recording in MCAP, where it has several")
+      ->option_text("TOPIC");
+  app.add_option("--at", a.at,
+                 "Time of the image to read of a recording in MCAP, s: that of a header, or +S "
+                 "after the first; else the first image")
+      ->option_text("TIME");
   app.add_option("--camera-poses", a.camera_poses,
                  "For a recording, the path of the camera: TUM text or a pose per frame; else "
-                 "NAME.pose.txt beside the frames, or groundtruth.txt");
+                 "NAME.pose.txt beside the frames, groundtruth.txt, or TF of a recording");
   app.add_option("--frame-rate", a.frame_rate,
                  "Frames per second of a recording whose names have numbers but no times")
       ->check(number_in(1e-3, 1e6))
@@ -69,7 +77,7 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.depth.empty()) refuse_usage("no depth image is given: name a file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
     refuse_usage("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
-  if (!a.camera_poses.empty())
+  if (!a.camera_poses.empty() && mcap::files_of(a.depth).empty())
     refuse_usage("--camera-poses is for a recording: give one frame's pose by --camera-pose");
   if (!a.export_path.empty()) check_points_path(a.export_path);
   std::vector<std::string> inputs{a.depth};
@@ -144,14 +152,15 @@ nlohmann::json parameters_of(const Program& program, const ImportOptions& option
 }
 
 void run(const Program& program, const Arguments& a) {
+  if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
+    refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
   if (is_recording(a)) return run_recording(program, a);
   check(a, program.common());
   if (!a.view.empty()) view::check_available();
   ImportOptions options = import_options(program, a.import, a.depth);
   const auto removed = remove_solids(program, a, options);
   const auto start = std::chrono::steady_clock::now();
-  const std::string name = a.depth == "-" ? "standard input" : a.depth;
-  const std::vector<std::byte> bytes = file::read_all(a.depth);
+  const auto [name, bytes] = source_of(program, a, options);
   ImportedCloud imported;
   try {
     imported = import_cloud(bytes, name, options);
@@ -214,6 +223,7 @@ int main(int argc, char** argv) {
       "vpm-normals depth.png -o scene.vpmc --intrinsics 525,525,319.5,239.5 --depth-scale 5000",
       "vpm-normals scene.ply -o points.vpmc   # points of another program",
       "vpm-normals frames -o clouds --intrinsics camera.txt --depth-scale 5000   # a recording",
+      "vpm-normals rec.mcap -o scene.vpmc --at +2.5   # an image of a recording of ROS 2",
   });
   return program.run(argc, argv, [&] {
     if (!run_list(program, list, {"depth", ".vpmc"})) run(program, arguments);

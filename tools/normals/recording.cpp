@@ -1,12 +1,18 @@
 // Mode of vpm-normals that makes clouds of the frames of a recording.
 #include <vpm/error.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
+#include "libvpm/recording/mcap/mcap_file.h"
+#include "libvpm/recording/pose_columns.h"
 #include "tools/common/error_text.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/normals/arguments.h"
@@ -24,8 +30,6 @@ void check(const Arguments& a) {
     refuse_usage("the input is a recording: give -o FOLDER for its clouds");
   if (!a.report.empty() || !a.export_path.empty() || !a.view.empty())
     refuse_usage("--report, --export and --view are for one frame: leave them out, or name it");
-  if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
-    refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
   std::error_code fault;
   if (fs::equivalent(a.depth, a.output, fault))
     refuse_usage("--output " + a.output + " is the folder of the frames: name another one");
@@ -50,11 +54,36 @@ std::vector<std::string> names_of(const Recording& recording) {
   std::vector<std::string> names;
   std::set<std::string> seen;
   for (const RecordedFrame& frame : recording.frames) {
-    names.push_back(fs::path(frame.path).stem().string() + ".vpmc");
+    names.push_back(stem_of(frame) + ".vpmc");
     if (!seen.insert(names.back()).second)
       refuse("two frames have this name", frame.path, "give each of them a name of its own");
   }
   return names;
+}
+
+RecordingOptions options_of(const Arguments& a, const ImportOptions& options) {
+  return {a.frame_rate, a.camera_poses, options.to_world, a.topic, {}};
+}
+
+// Returns the frame nearest to a time, s, on the recording's clock or, as "+S", after the first
+// frame; the first for "".
+const RecordedFrame& frame_at(const Recording& recording, const std::string& at,
+                              const std::string& name) {
+  const std::vector<RecordedFrame>& frames = recording.frames;
+  if (at.empty()) return frames.front();
+  const bool is_after_first = at.starts_with('+');
+  const std::optional<double> number = file::to_number(at.substr(is_after_first));
+  if (!number || !std::isfinite(*number))
+    refuse_usage("--at " + at + ": give seconds, such as 12.5, or +12.5 after the first image");
+  const double time = is_after_first ? frames.front().time + *number : seconds_of_stamp(*number);
+  if (time < frames.front().time - kPoseTolerance || time > frames.back().time + kPoseTolerance) {
+    char text[160];
+    std::snprintf(text, sizeof text, "no image at %.3f s: they are from %.3f to %.3f s", time,
+                  frames.front().time, frames.back().time);
+    refuse(text, name, "give --at +0 for the first, or a time among them");
+  }
+  return *std::ranges::min_element(
+      frames, {}, [&](const RecordedFrame& frame) { return std::abs(frame.time - time); });
 }
 
 // Converts frames one by one, and counts those that cannot be used.
@@ -85,7 +114,7 @@ class FrameWriter {
     if (frame.camera) options.to_world = frame.camera;
     options.time = frame.time;
     options.depth.looks_for_mistakes = written_ == 0;  // those of one frame are said
-    const std::vector<std::byte> bytes = file::read_all(frame.path);
+    const std::vector<std::byte> bytes = bytes_of(frame);
     ImportedCloud imported = import_cloud(bytes, frame.path, options);
     if (written_ == 0) say(program_, frame.path, imported.remarks);
     imported.cloud.provenance = provenance_of(program_, options, bytes);
@@ -115,6 +144,24 @@ void write_times(const std::string& folder, const Recording& recording,
 
 }  // namespace
 
+Source source_of(const Program& program, const Arguments& a, ImportOptions& options) {
+  if (mcap::files_of(a.depth).empty()) {
+    for (const auto& [option, value] : {std::pair("--topic", &a.topic), std::pair("--at", &a.at)})
+      if (!value->empty())
+        refuse_usage(std::string(option) + " is for a recording in MCAP: leave it out");
+    return {a.depth == "-" ? "standard input" : a.depth, file::read_all(a.depth)};
+  }
+  const Recording recording = open_recording(program, a.depth, options_of(a, options), options);
+  note_recording(program, a.depth, recording, options);
+  const RecordedFrame& frame = frame_at(recording, a.at, a.depth);
+  if (frame.is_lost) refuse("no pose of its camera", frame.path);
+  if (frame.camera) options.to_world = frame.camera;
+  options.time = frame.time;
+  program.note("the image of " + stem_of(frame) + " s is read, of " +
+               std::to_string(recording.frames.size()));
+  return {frame.path, bytes_of(frame)};
+}
+
 bool is_recording(const Arguments& a) {
   std::error_code fault;
   return fs::is_directory(a.depth, fault) || a.output.ends_with('/') ||
@@ -123,10 +170,11 @@ bool is_recording(const Arguments& a) {
 
 void run_recording(const Program& program, const Arguments& a) {
   check(a);
+  if (!a.at.empty())
+    refuse_usage("--at is for one frame: leave it out, or name a file by --output");
   ImportOptions options = import_options(program, a.import);
   const auto removed = remove_solids(program, a, options);
-  const RecordingOptions of_recording{a.frame_rate, a.camera_poses, options.to_world};
-  const Recording recording = open_recording(program, a.depth, of_recording, options);
+  const Recording recording = open_recording(program, a.depth, options_of(a, options), options);
   if (is_ready_cloud(recording.frames.front()))
     refuse_usage(a.depth + " holds clouds already: give it to vpm-query --frames");
   note_recording(program, a.depth, recording, options);

@@ -80,7 +80,8 @@ void declare_inputs(CLI::App& app, Arguments& a) {
       ->option_text("POSE");
   // --trajectory is its name of earlier versions.
   app.add_option("--poses,--trajectory", a.poses,
-                 "File of poses: JSON Lines, TUM text or 4x4 text; with --frames, the path of the "
+                 "File of poses: JSON Lines, TUM text or 4x4 text, or those in a recording: "
+                 "REC.mcap:/TOPIC, REC.mcap:FRAME of TF. With --frames, the path of the "
                  "tool. Given several times there, a path for each --tool")
       ->allow_extra_args(false)
       ->option_text("FILE");
@@ -88,8 +89,8 @@ void declare_inputs(CLI::App& app, Arguments& a) {
          "--frames", a.replay.frames,
          "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
          "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
-         "lines; goes with --poses")
-      ->option_text("FOLDER");
+         "lines, or a recording of ROS 2 in MCAP; goes with --poses")
+      ->option_text("FOLDER or FILE");
 }
 
 void declare_assembly(CLI::App& app, Arguments& a) {
@@ -217,9 +218,12 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
   app.add_option("--rate", a.rate, "Steps per second along --poses with --frames (1000)")
       ->check(number_in(1, 1e6))
       ->option_text("R");
+  app.add_option("--topic", a.topic,
+                 "Topic of the depth images of a recording in MCAP, where it has several")
+      ->option_text("TOPIC");
   app.add_option("--camera-poses", a.camera_poses,
                  "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
-                 "frames, or groundtruth.txt");
+                 "frames, groundtruth.txt, or TF of a recording");
   app.add_option(
          "--remove", a.remove,
          "Take known solids, such as the robot and what it holds, out of each frame: a file "

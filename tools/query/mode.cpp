@@ -50,6 +50,7 @@ constexpr Row kTable[] = {
     {"--unseen", {yes, yes, no, yes, yes, yes, yes, no}},
     {"--spheres-out", {yes, yes, yes, yes, no, no, no, no}},
     {"--frames", {no, no, no, yes, no, yes, no, no}},
+    {"--topic", {no, no, no, yes, no, yes, no, no}},
     {"--rate", {no, no, no, yes, no, yes, no, no}},
     {"--camera-poses", {no, no, no, yes, no, yes, no, no}},
     {"--remove", {no, no, no, yes, no, yes, no, no}},

@@ -133,8 +133,9 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
-  return {a.frame_rate, a.camera_poses, import.to_world};
+RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import,
+                                   const std::string& world) {
+  return {a.frame_rate, a.camera_poses, import.to_world, a.topic, world};
 }
 
 Replay::Replay(const QuerySetup& setup, double rate)
@@ -148,8 +149,8 @@ Replay::Replay(const QuerySetup& setup, double rate)
       points_(setup.points),
       solids_(setup.solids),
       tells_contacts_(setup.arguments.contacts > 0) {
-  recording_ =
-      open_recording(program_, arguments_.frames, recording_options(arguments_, import_), import_);
+  recording_ = open_recording(program_, arguments_.frames,
+                              recording_options(arguments_, import_, paths_.world()), import_);
   note_recording(program_, arguments_.frames, recording_, import_);
   if (!recording_.has_clock && paths_.has_times())
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");

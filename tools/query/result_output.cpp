@@ -8,6 +8,7 @@
 
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/mcap/recorded.h"
 #include "tools/common/error_text.h"
 #include "tools/query/solid_scene.h"
 
@@ -83,9 +84,11 @@ constexpr CsvColumn kCoupling[] = {
     {"lost", "/energy/lost"},
 };
 
-// Returns the hash of a file, or null if it has no name, is a folder, or cannot be read twice.
+// Returns the hash of a file, or null if it has no name, is a folder, or cannot be read twice. Of
+// poses in a recording the name is compared, as that of frames is.
 nlohmann::json hash_of(const std::string& name) {
   std::error_code fault;
+  if (mcap::poses_name(name)) return name;
   if (name.empty() || !std::filesystem::is_regular_file(name, fault)) return nullptr;
   return file::content_hash({file::read_all(name)});
 }

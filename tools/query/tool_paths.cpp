@@ -5,14 +5,20 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "tools/common/import_arguments.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
 namespace {
 
-TimedPath read_path(const Program& program, const std::string& name) {
+TimedPath read_path(const Program& program, const std::string& name, std::string& world) {
   PoseReader reader(name);
+  say(program, name, reader.remarks());
+  if (!reader.world().empty() && !world.empty() && reader.world() != world)
+    refuse("the paths of the tools are in two frames, " + world + " and " + reader.world(), name,
+           "name the poses of one world: FILE:WORLD:FRAME");
+  if (!reader.world().empty()) world = reader.world();
   TimedPath path(reader);
   note_deviation(program, name, reader.largest_deviation());
   note_lines(program, name, path.undefined(), path.doubled());
@@ -50,7 +56,7 @@ TimedPath common_time(const std::vector<TimedPath>& paths) {
 
 ToolPaths::ToolPaths(const Program& program, const std::vector<std::string>& names, double rate,
                      std::size_t solids) {
-  for (const std::string& name : names) paths_.push_back(read_path(program, name));
+  for (const std::string& name : names) paths_.push_back(read_path(program, name, world_));
   check_alike(names, paths_);
   check_moving_solids(names.front(), paths_.front().solids(), solids);
   for (std::size_t k = 1; k < paths_.size(); ++k)

@@ -29,12 +29,15 @@ class ToolPaths {
   // Returns the poses of the scene's solids; none if they stay.
   std::vector<Pose> solids(std::size_t step) const;
 
+  // Returns the frame that the poses are in, if a recording tells it.
+  const std::string& world() const { return world_; }
   bool has_times() const { return paths_.front().has_times(); }
   // Return the times of the first and of the last step, s; need has_times().
   double start() const { return steps_->path().start(); }
   double end() const { return steps_->path().end(); }
 
  private:
+  std::string world_;
   std::vector<TimedPath> paths_;
   std::optional<SampledPath> steps_;  // a path over the time of all
 };

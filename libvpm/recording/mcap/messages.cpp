@@ -1,0 +1,137 @@
+#include "libvpm/recording/mcap/messages.h"
+
+#include <cstdio>
+#include <cstring>
+
+#include "libvpm/file/text.h"
+#include "libvpm/import/scan_facts.h"
+
+namespace vpm::mcap {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+std::string read_frame(ByteCursor& cursor) {
+  const std::string name = cursor.text();
+  return name.starts_with('/') ? name.substr(1) : name;  // as ROS 1 wrote some
+}
+
+Header read_header(ByteCursor& cursor) {
+  const std::int64_t seconds = cursor.number<std::int32_t>();
+  const std::int64_t time = kSecond * seconds + cursor.number<std::uint32_t>();
+  return {time, read_frame(cursor)};
+}
+
+// Returns the rows of an image as an array of NumPy, without what pads them.
+std::vector<std::byte> array_of(ByteCursor& cursor) {
+  const std::uint64_t height = cursor.number<std::uint32_t>(),
+                      width = cursor.number<std::uint32_t>();
+  const std::string coding = cursor.text();
+  if (!is_of_depths(kImage, coding))
+    refuse("an image of " + file::shown(coding) + ", not of 16UC1 or 32FC1 as depths are");
+  const bool are_floats = coding == "32FC1", is_big_endian = cursor.number<std::uint8_t>() != 0;
+  const std::uint64_t row = width * (are_floats ? 4 : 2), step = cursor.number<std::uint32_t>();
+  const Bytes data = cursor.take(cursor.number<std::uint32_t>());
+  if (step < row || height == 0 || data.size() < step * (height - 1) + row)
+    refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) +
+           " pixels in rows of " + std::to_string(step) + " bytes is not in its " +
+           std::to_string(data.size()) + " bytes: the message is damaged");
+  char header[129];  // NumPy's version 1.0: magic, length of what follows, its dictionary
+  std::snprintf(
+      header, sizeof header,
+      "\x93NUMPY\x01%c\x76%c{'descr': '%c%s', 'fortran_order': False, 'shape': (%lu, %lu)}%s", 0, 0,
+      is_big_endian ? '>' : '<', are_floats ? "f4" : "u2", height, width,
+      std::string(100, ' ').c_str());
+  header[127] = '\n';
+  std::vector<std::byte> array(128 + row * height);
+  std::memcpy(array.data(), header, 128);
+  for (std::uint64_t v = 0; v < height && row > 0; ++v)
+    std::memcpy(array.data() + 128 + v * row, data.data() + v * step, row);
+  return array;
+}
+
+// Takes numbers, and returns them as a list of JSON.
+std::string list_of(ByteCursor& cursor, std::uint32_t count) {
+  std::string list;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    char number[40];
+    std::snprintf(number, sizeof number, "%s%.17g", k == 0 ? "" : ",", cursor.number<double>());
+    list += number;
+  }
+  return "[" + list + "]";
+}
+
+}  // namespace
+
+std::string seconds_text(std::int64_t nanoseconds) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%ld.%09ld", nanoseconds / kSecond, nanoseconds % kSecond);
+  return text;
+}
+
+ImageKind read_image_kind(const std::string& type, Bytes message) {
+  ByteCursor cursor = ByteCursor::of_message(message);
+  Header header = read_header(cursor);
+  for (int k = 0; type == kImage && k < 2; ++k) cursor.number<std::uint32_t>();  // its size
+  return {std::move(header), cursor.text()};
+}
+
+bool is_of_depths(const std::string& type, const std::string& coding) {
+  if (type == kImage) return coding == "16UC1" || coding == "32FC1" || coding == "mono16";
+  return type == kCompressedImage &&
+         (coding.find("compressedDepth") != coding.npos || coding.starts_with("16UC1"));
+}
+
+std::vector<std::byte> image_file(const std::string& type, Bytes message) {
+  ByteCursor cursor = ByteCursor::of_message(message);
+  read_header(cursor);
+  if (type == kImage) return array_of(cursor);
+  cursor.text();
+  const Bytes data = cursor.take(cursor.number<std::uint32_t>());
+  return {data.begin(), data.end()};
+}
+
+IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
+  ByteCursor cursor = ByteCursor::of_message(message);
+  const auto next = [&] { return cursor.number<std::uint32_t>(); };
+  read_header(cursor);
+  const std::uint32_t height = next(), width = next();
+  cursor.text();  // the model of the distortion
+  std::string json = "{\"d\":" + list_of(cursor, next()) + ",\"k\":" + list_of(cursor, 9);
+  list_of(cursor, 9);  // the rotation that rectifies
+  json += ",\"p\":" + list_of(cursor, 12) + "}";
+  const std::uint32_t across = std::max(1U, next()), down = std::max(1U, next());  // binning
+  const std::uint32_t left = next(), top = next(), rows = next(), columns = next();
+  IntrinsicsFile file = parse_intrinsics(std::as_bytes(std::span(json)), name);
+  file.width = (columns > 0 ? columns : width) / across;  // zeros stand for the whole image
+  file.height = (rows > 0 ? rows : height) / down;
+  if (left == 0 && top == 0 && file.width == width && file.height == height) return file;
+  // The centre of the first pixel is 0; one that is binned lies in the middle of several.
+  Intrinsics& k = file.intrinsics;
+  k = {k.fx / across, k.fy / down, (k.cx - left + 0.5) / across - 0.5,
+       (k.cy - top + 0.5) / down - 0.5};
+  file.remarks.push_back(
+      {false, "its region of interest and binning make the intrinsics " + intrinsics_text(k)});
+  return file;
+}
+
+StampedPose read_pose(Bytes message) {
+  ByteCursor cursor = ByteCursor::of_message(message);
+  StampedPose pose{read_header(cursor), {}, {}};
+  for (double& number : pose.numbers) number = cursor.number<double>();
+  return pose;
+}
+
+std::vector<StampedPose> read_transforms(Bytes message) {
+  ByteCursor cursor = ByteCursor::of_message(message);
+  std::vector<StampedPose> transforms;
+  for (auto left = cursor.number<std::uint32_t>(); left > 0; --left) {
+    Header header = read_header(cursor);
+    StampedPose& pose =
+        transforms.emplace_back(StampedPose{std::move(header), read_frame(cursor), {}});
+    for (double& number : pose.numbers) number = cursor.number<double>();
+  }
+  return transforms;
+}
+
+}  // namespace vpm::mcap
