@@ -256,7 +256,7 @@ void take_mcap(const std::string& path, const RecordingOptions& options, Recordi
     recording.frames.push_back(
         {frame.time, path + "/" + frame.name, {}, false, std::move(frame.read)});
   recording.intrinsics = std::move(read.intrinsics);
-  recording.intrinsics_source = path + ":" + read.camera_info;
+  recording.intrinsics_source = read.camera_info;
   recording.no_intrinsics = read.no_intrinsics;
   recording.remarks = std::move(read.remarks);
   if (options.topic.empty())
@@ -345,7 +345,7 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
 
 void read_intrinsics(const fs::path& path, Recording& recording) {
   if (!is_file(path)) return;
-  recording.intrinsics_source = path.string();
+  recording.intrinsics_source = path.filename().string();
   recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string());
 }
 

@@ -71,9 +71,8 @@ struct RecordingOptions {
   // frame.
   std::string camera_poses;
   std::optional<Pose> camera;
-  std::string topic;  // of MCAP: that of the depth images; if empty, the only one
-  std::string
-      world;  // of MCAP: the frame of TF that is the world; if empty, the one without parent
+  std::string topic = {};  // of MCAP: that of the depth images; if empty, the only one
+  std::string world = {};  // of MCAP: the world's frame of TF; if empty, the one without parent
 };
 
 // A frame further than this from the ends of a camera's path has no pose: half a frame at 25 Hz, as

@@ -41,7 +41,7 @@ TEST_F(ARecording, OfAnotherFormatIsNamed) {
   EXPECT_TRUE(says(fault("a.mkv"),
                    "this is a Matroska recording (.mkv), such as an Azure Kinect's; "
                    "extract its depth images as 16-bit PNG"));
-  EXPECT_TRUE(says(fault("a.bag"), "this is a ROS bag; extract its images"));
+  EXPECT_TRUE(says(fault("a.bag"), "this is a ROS bag; convert it to MCAP: rosbags-convert"));
   EXPECT_TRUE(says(fault("a.png"), "this is a PNG picture; give the folder of the frames"));
 }
 
@@ -282,7 +282,7 @@ TEST_F(ARecording, KnowsItsCamera) {
 TEST_F(ARecording, IsRefusedWithTheReason) {
   const auto says_why = [&](const std::string& why) { return says(refusal([&] { read(); }), why); };
   EXPECT_TRUE(says_why("no frames in it"));
-  for (const std::string bag : {"a.bag", "a_0.mcap", "a_0.db3"}) {
+  for (const std::string bag : {"a.bag", "a_0.db3"}) {
     write(bag);
     EXPECT_TRUE(says_why("no frames in it, but a recording of ROS, " + bag));
     std::filesystem::remove(path(bag));

@@ -336,11 +336,12 @@ SCAN_STARTS = {
     b"MATLAB 5.0 MAT-file": "save one of its arrays as 16-bit PNG",
     b"MATLAB 7.3 MAT-file": "save one of its arrays as 16-bit PNG",
     b"\x1a\x45\xdf\xa3": "extract its depth images as 16-bit PNG, for example by ffmpeg",
-    b"#ROSBAG V2.0": "extract its images or clouds first", b"\x89MCAP0\r\n": "extract its images or clouds first",
+    b"#ROSBAG V2.0": "convert it to MCAP: rosbags-convert --src BAG --dst OUT --dst-storage mcap",
     b"RIFF\x10\0\0\0WEBP": "give the 16-bit or float image", b"#?RADIANCE\n": "give the 16-bit or float image",
     b"P7\nWIDTH 64\n": "save it as PGM, or as 16-bit PNG", b"\x80\x04\x95\x10": "save its array as .npy",
     b"160&120&1&": "save its depths as .npy, PFM or 16-bit PNG", b"PIEH": "save its depths as .npy, PFM or 16-bit PNG",
-    b"SQLite format 3\0": "extract its images or clouds first", b"LASF": "convert it to PLY with normals, for example by PDAL",
+    b"SQLite format 3\0": "convert the bag's folder to MCAP: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap",
+    b"LASF": "convert it to PLY with normals, for example by PDAL",
     b"ASTM-E57": "convert it to PLY with normals, for example by PDAL",
 }
 OTHER_STARTS = {

@@ -17,14 +17,16 @@ void take_intrinsics(const Program& program, const std::string& path, const Reco
     refuse(recording.no_intrinsics, path, "give `intrinsics` fx,fy,cx,cy of its camera");
   if (!recording.intrinsics) return;
   const IntrinsicsFile& file = *recording.intrinsics;
-  const std::string& name = recording.intrinsics_source;
+  const std::string& source = recording.intrinsics_source;
+  const std::string name = path + (source.starts_with('/') ? ":" : "/") + source;
   import.intrinsics = file.intrinsics;
   import.calibrated_width = file.width;
   import.calibrated_height = file.height;
   say(program, name, file.remarks);
   say(program, name, unused_factor(file.factor, import.depth.units_per_metre));
   check_intrinsics(*import.intrinsics);
-  program.note("intrinsics " + intrinsics_text(*import.intrinsics) + " are read from " + name);
+  program.note("intrinsics " + intrinsics_text(*import.intrinsics) + " are read from " + source +
+               " in " + path);
 }
 
 void warn_of_improbable_times(const Program& program, const Recording& recording) {

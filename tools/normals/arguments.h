@@ -46,6 +46,9 @@ nlohmann::json provenance_of(const Program& program, const ImportOptions& option
 // True if the input is a recording: a folder, or a list of frames whose output is a folder.
 bool is_recording(const Arguments& arguments);
 
+// Throws Error if the camera is placed twice.
+void check_camera(const Arguments& arguments);
+
 // The file that becomes a cloud: its name and bytes.
 struct Source {
   std::string name;

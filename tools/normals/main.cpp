@@ -79,6 +79,7 @@ void check(const Arguments& a, const CommonOptions& common) {
     refuse_usage("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
   if (!a.camera_poses.empty() && mcap::files_of(a.depth).empty())
     refuse_usage("--camera-poses is for a recording: give one frame's pose by --camera-pose");
+  check_camera(a);
   if (!a.export_path.empty()) check_points_path(a.export_path);
   std::vector<std::string> inputs{a.depth};
   for (const std::string& text : a.remove) inputs.push_back(solid_from_text(text, "--remove").name);
@@ -152,8 +153,6 @@ nlohmann::json parameters_of(const Program& program, const ImportOptions& option
 }
 
 void run(const Program& program, const Arguments& a) {
-  if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
-    refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
   if (is_recording(a)) return run_recording(program, a);
   check(a, program.common());
   if (!a.view.empty()) view::check_available();

@@ -30,6 +30,7 @@ void check(const Arguments& a) {
     refuse_usage("the input is a recording: give -o FOLDER for its clouds");
   if (!a.report.empty() || !a.export_path.empty() || !a.view.empty())
     refuse_usage("--report, --export and --view are for one frame: leave them out, or name it");
+  check_camera(a);
   std::error_code fault;
   if (fs::equivalent(a.depth, a.output, fault))
     refuse_usage("--output " + a.output + " is the folder of the frames: name another one");
@@ -143,6 +144,11 @@ void write_times(const std::string& folder, const Recording& recording,
 }
 
 }  // namespace
+
+void check_camera(const Arguments& a) {
+  if (!a.camera_poses.empty() && !a.import.camera_pose.empty())
+    refuse_usage("--camera-pose and --camera-poses exclude each other: leave one of them out");
+}
 
 Source source_of(const Program& program, const Arguments& a, ImportOptions& options) {
   if (mcap::files_of(a.depth).empty()) {

@@ -66,8 +66,8 @@ $ for t in '\x1f\x8b' 'BZh9' '\xfd7zXZ\0' '7z\xbc\xaf' '\xff\xd8\xff' 'GIF89a' '
 2> vpm-normals: error: standard input: this is a GIF picture; give the 16-bit or float image
 2> vpm-normals: error: standard input: this is an HDF5 file; save one of its arrays as .npy or 16-bit PNG
 2> vpm-normals: error: standard input: this is a MATLAB file; save one of its arrays as 16-bit PNG
-2> vpm-normals: error: standard input: this is a ROS bag; extract its images or clouds first
-2> vpm-normals: error: standard input: this is an MCAP recording; extract its images or clouds first
+2> vpm-normals: error: standard input: this is a ROS bag; convert it to MCAP: rosbags-convert --src BAG --dst OUT --dst-storage mcap
+2> vpm-normals: error: standard input: this is an MCAP recording; give its file to vpm-normals, or to vpm-query --frames
 2> vpm-normals: error: standard input: this is a LAS cloud; convert it to PLY with normals, for example by PDAL
 2> vpm-normals: error: standard input: this is an E57 cloud; convert it to PLY with normals, for example by PDAL
 2> vpm-normals: error: standard input: this is a Blender file; give a depth image or a cloud, or the mesh to vpm-pack
