@@ -222,7 +222,6 @@ int main(int argc, char** argv) {
       "vpm-normals depth.png -o scene.vpmc --intrinsics 525,525,319.5,239.5 --depth-scale 5000",
       "vpm-normals scene.ply -o points.vpmc   # points of another program",
       "vpm-normals frames -o clouds --intrinsics camera.txt --depth-scale 5000   # a recording",
-      "vpm-normals rec.mcap -o scene.vpmc --at +2.5   # an image of a recording of ROS 2",
   });
   return program.run(argc, argv, [&] {
     if (!run_list(program, list, {"depth", ".vpmc"})) run(program, arguments);
