@@ -38,7 +38,6 @@ UNTRIED = [
         "times the volume of the solid, so they overlap or leave it",
     ]),
     ("a help text, a command, or the name of an option that takes the place of another word", [
-        "tool. Given several times there, a path for each --tool",
         "input. Or a packing or tool model, whose spheres are written by --export", "chosen by --urdf",
         "Measure accuracy and speed; write JSON and CSV", "--meshes MESHES", "--data DATA",
         "depend on the machine's speed. Wins over --max-error and --for-scene",
@@ -73,6 +72,16 @@ UNTRIED = [
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
         "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),
+    ("stands in a transcript: cases/mcap.t", [
+        "give its file to vpm-normals, or to vpm-query --frames", "name one of these, or a topic of poses",
+        "name two of these, or give the poses in a file", "`topic` is for recordings in MCAP: leave it out",
+        "give `intrinsics` fx,fy,cx,cy of its camera", ": give seconds, such as 12.5, or +12.5 after the first image",
+        "give --at +0 for the first, or a time among them", "is for a recording in MCAP: leave it out",
+        "--at is for one frame: leave it out, or name a file by --output", "name the poses of one world: FILE:WORLD:FRAME",
+    ]),
+    ("of recordings of ROS 2 that contradict themselves, that are compressed message by message, or that change while they are read", [
+        "give the poses in a file", "rewrite its folder: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap", "copy it again",
+    ]),
     ("stands in a transcript: cases/pairs.t", [
         "chosen by --pairs", ": leave --unit out", ": give holes, voxel, voxel=RES, flood or flood=RES", 'write {"',
         "write it in quotation marks", "name the part's file", 'write {"parts": ["shaft", "hub"]}',
@@ -95,7 +104,7 @@ UNTRIED = [
         'write {"pose": [tx,ty,tz,qx,qy,qz,qw]} or {"cloud": "scene.vpmc"}, with an "id" if wanted',
     ]),
     ("of files that are told by their first bytes, and of depths that may be coded: tests/file, tests/recording, tests/import", [
-        "save it as CSV", "unpack it first: tar xf", "extract its depth images first", "(SUN3D), or `decode` rotated",
+        "save it as CSV", "unpack it first: tar xf", "(SUN3D), or `decode` rotated",
         "and `depth_scale` 10000, which make that",
         ", as 8 bits are that were widened to 16; if so, give the image that they were made of",
     ]),

@@ -39,7 +39,8 @@ std::string chosen(const std::vector<Topic>& topics, const std::string& wanted,
     }
   const std::string cure = serving.empty() ? "" : "give " + option + serving.front();
   const std::string has = "; it has " + std::to_string(all.size()) +
-                          (all.size() == 1 ? " topic: " : " topics: ") + file::listed(all);
+                          (all.size() == 1 ? " topic: " : all.empty() ? " topics" : " topics: ") +
+                          file::listed(all);
   if (wanted.empty() && serving.size() == 1) return serving.front();
   if (wanted.empty() && serving.empty()) refuse("no topic of " + words + " in it" + has, recording);
   if (wanted.empty())
@@ -62,6 +63,19 @@ auto naming(const std::string& place, const Action& action) {
     return action();
   } catch (const Error& fault) {
     throw Error(fault.kind(), fault.problem(), place, fault.hint());
+  }
+}
+
+// Returns what the action does; its refusals tell what is wrong with the recording, too.
+template <class Action>
+auto telling(const Remarks& remarks, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& fault) {
+    std::string problem = fault.problem();
+    for (const Remark& remark : remarks)
+      if (remark.is_warning) problem += "; " + remark.text;
+    throw Error(fault.kind(), problem, fault.where(), fault.hint());
   }
 }
 
@@ -199,7 +213,9 @@ Poses poses_of_topic(const PosesName& name) {
   std::vector<Topic> topics;
   for (const auto& [topic, channel] : channels)
     topics.push_back({topic, channel.type, found.contains(topic)});
-  const auto& all = found[chosen(topics, name.topic, kPoses, name.recording + ":", name.recording)];
+  const auto& all = found[telling(poses.remarks, [&] {
+    return chosen(topics, name.topic, kPoses, name.recording + ":", name.recording);
+  })];
   poses.world = all.begin()->second.header.frame;
   for (const auto& [time, pose] : all) poses.lines += line_of(seconds_text(time), pose.numbers);
   return poses;
@@ -250,7 +266,9 @@ Frames read_frames(const std::string& recording, const std::string& topic) {
   frames.remarks = scan(recording, cameras.channels, [&](const Message& message, const auto& file) {
     cameras.take(message, file);
   });
-  frames.topic = chosen(cameras.topics(), topic, kDepths, "`topic` ", recording);
+  frames.topic = telling(frames.remarks, [&] {
+    return chosen(cameras.topics(), topic, kDepths, "`topic` ", recording);
+  });
   Images& images = cameras.images.at(frames.topic);
   frames.camera_frame = images.first.header.frame;
   add_frames(images, cameras.channels.at(frames.topic).type, frames);

@@ -1,0 +1,82 @@
+# Recordings of ROS 2 in MCAP, read as they are.
+
+$ cp $SOURCE/tests/tools/inputs/cube.off .
+$ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 30 --quiet
+$ cat > record.sh <<< 'python3 $SOURCE/tests/tools/mcap_writer.py "$@"'
+$ cat > fractions.py <<< 'import itertools, json, sys; print([round(v, 2) for v, _ in itertools.groupby(json.loads(l)["volume_fraction"] for l in sys.stdin)])'
+$ printf '%s\n' '1000 0 0 0.95 0 0 0 1' '1000.1 0 0 0.95 0 0 0 1' > still.txt
+
+# The same wall as in a folder of images, whatever it is recorded as, by poses of a file, of a topic, and of TF.
+$ python3 $SOURCE/tests/tools/frames.py timed tum 3; vpm-query --tool cube.vpmg --intrinsics 60,60,31.5,23.5 --frames tum --poses still.txt --quiet | python3 fractions.py
+[0.25, 0.3, 0.35]
+$ for o in pad=0 pad=10 big_endian=1 encoding=32FC1 per_chunk=1 per_chunk=0 index=0 'big_endian=1 encoding=32FC1 pad=3'; do bash record.sh rec.mcap 3 $o; vpm-query --tool cube.vpmg --frames rec.mcap --poses still.txt --quiet | python3 fractions.py; done
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+$ bash record.sh rec.mcap 3 tool=/tool; vpm-query --tool cube.vpmg --frames rec.mcap --poses rec.mcap:/tool --quiet | python3 fractions.py
+[0.25, 0.3]
+$ bash record.sh tf.mcap 3 tf=base:link; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap:tool0 --rate 30 --quiet | sed -n 31,40p | python3 fractions.py
+[0.25, 0.3, 0.35]
+2> vpm-query: warning: 30 steps came before the first frame that can be used: nothing is in their way
+
+# An image becomes a cloud: the first, or the one of a time; or all of them.
+$ bash record.sh rec.mcap 3; for at in '' '--at +0.034' '--at 1000.0666'; do vpm-normals rec.mcap -o a.vpmc $at --verbose --force 2>&1 | grep -o "is read, of.*\|image of .*\|depth [0-9.]* to [0-9.]* m"; done
+image of 1000.000000000 s is read, of 3
+depth 1 to 1 m
+image of 1000.033333000 s is read, of 3
+depth 0.99 to 0.99 m
+image of 1000.066667000 s is read, of 3
+depth 0.98 to 0.98 m
+$ vpm-normals rec.mcap -o clouds/ --quiet && ls clouds
+1000.000000000.vpmc
+1000.033333000.vpmc
+1000.066667000.vpmc
+depth.txt
+
+# What is truncated is read as far as it goes, which is said wherever it ends.
+$ bash record.sh rec.mcap 2 per_chunk=1; for n in $(seq 9 331 $(($(stat -c %s rec.mcap) - 60))); do head -c $n rec.mcap > cut.mcap; vpm-normals cut.mcap -o cut.vpmc --force 2> said.txt; s=$?; test $s -le 1 && grep -q "it has no end, as where its recorder was stopped" said.txt || echo "$n bytes: $s"; done; head -c 9000 rec.mcap > cut.mcap; vpm-normals cut.mcap -o cut.vpmc --force
+2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in cut.mcap
+2> vpm-normals: warning: cut.mcap: it has no end, as where its recorder was stopped: it is read as far as it goes, 7390 of 9000 bytes
+2> vpm-normals: note: cut.mcap: its only topic of depth images is /camera/depth/image_rect_raw
+2> vpm-normals: note: the camera does not move: cut.mcap has no poses of it, and no --camera-poses are given
+2> vpm-normals: note: the image of 1000.000000000 s is read, of 1
+$ python3 -c 'b = bytearray(open("rec.mcap", "rb").read()); b[7000] ^= 1; open("bad.mcap", "wb").write(b)'; vpm-normals bad.mcap -o bad.vpmc
+2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in bad.mcap
+2> vpm-normals: warning: bad.mcap: chunks or records that are damaged, and left out with all that they hold: 1
+2> vpm-normals: note: bad.mcap: its only topic of depth images is /camera/depth/image_rect_raw
+2> vpm-normals: note: the camera does not move: bad.mcap has no poses of it, and no --camera-poses are given
+2> vpm-normals: note: the image of 1000.000000000 s is read, of 2
+
+# Refusals say what there is.
+$ bash record.sh rec.mcap 3 color=1; vpm-normals rec.mcap -o x.vpmc --topic /other; vpm-normals rec.mcap -o x.vpmc --topic /camera/color/image_raw; vpm-normals rec.mcap -o x.vpmc --at 12; vpm-normals rec.mcap -o x.vpmc --at noon; vpm-normals rec.mcap -o clouds_2/ --at +0
+2> vpm-normals: error: rec.mcap: no topic /other in it; it has 3 topics: /camera/depth/image_rect_raw (sensor_msgs/msg/Image of 16UC1…, /camera/color/image_raw (sensor_msgs/msg/Image of rgb8), /camera/depth/camera_info (sensor_msgs/msg/CameraInfo); give --topic /camera/depth/image_rect_raw
+2> vpm-normals: error: rec.mcap: its topic /camera/color/image_raw is sensor_msgs/msg/Image of rgb8, and none of depth images (Image of 16UC1 or 32FC1, or compressedDepth); give --topic /camera/depth/image_rect_raw
+2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in rec.mcap
+2> vpm-normals: note: rec.mcap: its only topic of depth images is /camera/depth/image_rect_raw
+2> vpm-normals: note: the camera does not move: rec.mcap has no poses of it, and no --camera-poses are given
+2> vpm-normals: error: rec.mcap: no image at 12.000 s: they are from 1000.000 to 1000.067 s; give --at +0 for the first, or a time among them
+2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in rec.mcap
+2> vpm-normals: note: rec.mcap: its only topic of depth images is /camera/depth/image_rect_raw
+2> vpm-normals: note: the camera does not move: rec.mcap has no poses of it, and no --camera-poses are given
+2> vpm-normals: error: --at noon: give seconds, such as 12.5, or +12.5 after the first image
+2> vpm-normals: error: --at is for one frame: leave it out, or name a file by --output
+[2]
+$ bash record.sh no_info.mcap 3 info=; vpm-normals no_info.mcap -o x.vpmc; vpm-normals a.vpmc -o x.vpmc --at 1; vpm-normals - -o x.vpmc < rec.mcap
+2> vpm-normals: error: no_info.mcap: no /camera/depth/camera_info beside its images, /camera/depth/image_rect_raw; give --intrinsics fx,fy,cx,cy of its camera
+2> vpm-normals: error: --at is for a recording in MCAP: leave it out
+2> vpm-normals: error: standard input: this is an MCAP recording; give its file to vpm-normals, or to vpm-query --frames
+[1]
+$ vpm-query --tool cube.vpmg --frames tum --topic /a --poses still.txt --intrinsics 60,60,31.5,23.5; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap:gripper; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap:nowhere:tool0; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap
+2> vpm-query: error: tum: --topic is for recordings in MCAP: leave it out
+2> vpm-query: error: tf.mcap: TF has no poses of the frame gripper; it has those of camera_depth_optical_frame, link, tool0; name one of these, or a topic of poses
+2> vpm-query: error: tf.mcap: TF does not connect the frames tool0 and nowhere; it has poses of camera_depth_optical_frame, link, tool0; name two of these, or give the poses in a file
+2> vpm-query: error: tf.mcap: no topic of poses (PoseStamped; those of a frame of TF are FILE:FRAME) in it; it has 4 topics: /camera/depth/camera_info (sensor_msgs/msg/CameraInfo), /camera/depth/image_rect_raw (sensor_msgs/msg/Image), /tf (tf2_msgs/msg/TFMessage), /tf_static (tf2_msgs/msg/TFMessage)
+[1]
+$ vpm-query --tool cube.vpmg --tool cube.vpmg --frames tf.mcap --poses tf.mcap:base:tool0 --poses tf.mcap:link:tool0
+2> vpm-query: error: tf.mcap:link:tool0: the paths of the tools are in two frames, base and link; name the poses of one world: FILE:WORLD:FRAME
+[1]
