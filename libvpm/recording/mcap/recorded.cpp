@@ -18,7 +18,7 @@ namespace vpm::mcap {
 namespace {
 
 constexpr const char* kDepths = "depth images (Image of 16UC1 or 32FC1, or compressedDepth)";
-constexpr const char* kPoses = "poses (PoseStamped; those of a frame of TF are FILE:FRAME)";
+constexpr const char* kPoses = "poses (PoseStamped; of TF: FILE:FRAME)";
 
 struct Topic {
   std::string name, kind;  // kind: its type, and what else is known of it
@@ -34,12 +34,14 @@ std::string chosen(const std::vector<Topic>& topics, const std::string& wanted,
   for (const bool serves : {true, false})
     for (const Topic& topic : topics) {
       if (topic.serves != serves) continue;
-      all.push_back(topic.name + " (" + topic.kind + ")");
+      all.push_back(topic.name + " (" + topic.kind.substr(topic.kind.rfind('/') + 1) + ")");
       if (serves) serving.push_back(topic.name);
     }
   const std::string cure = serving.empty() ? "" : "give " + option + serving.front();
   const std::string has = "; it has " + std::to_string(all.size()) +
-                          (all.size() == 1 ? " topic: " : all.empty() ? " topics" : " topics: ") +
+                          (all.size() == 1 ? " topic: "
+                           : all.empty()   ? " topics"
+                                           : " topics: ") +
                           file::listed(all);
   if (wanted.empty() && serving.size() == 1) return serving.front();
   if (wanted.empty() && serving.empty()) refuse("no topic of " + words + " in it" + has, recording);
