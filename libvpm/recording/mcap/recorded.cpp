@@ -38,11 +38,7 @@ std::string chosen(const std::vector<Topic>& topics, const std::string& wanted,
       if (serves) serving.push_back(topic.name);
     }
   const std::string cure = serving.empty() ? "" : "give " + option + serving.front();
-  const std::string has = "; it has " + std::to_string(all.size()) +
-                          (all.size() == 1 ? " topic: "
-                           : all.empty()   ? " topics"
-                                           : " topics: ") +
-                          file::listed(all);
+  const std::string has = all.empty() ? "; it has none" : "; its topics: " + file::listed(all);
   if (wanted.empty() && serving.size() == 1) return serving.front();
   if (wanted.empty() && serving.empty()) refuse("no topic of " + words + " in it" + has, recording);
   if (wanted.empty())
@@ -50,8 +46,7 @@ std::string chosen(const std::vector<Topic>& topics, const std::string& wanted,
         std::to_string(serving.size()) + " topics of " + words + " in it: " + file::listed(serving),
         recording, cure + ", or another of them");
   const auto found = std::ranges::find(topics, wanted, &Topic::name);
-  if (found == topics.end())
-    refuse("no topic " + file::shown(wanted) + " in it" + has, recording, cure);
+  if (found == topics.end()) refuse("no topic " + file::shown(wanted) + has, recording, cure);
   if (!found->serves)
     refuse("its topic " + file::shown(wanted) + " is " + found->kind + ", and none of " + words,
            recording, cure);

@@ -54,7 +54,7 @@ $ python3 -c 'b = bytearray(open("rec.mcap", "rb").read()); b[7000] ^= 1; open("
 
 # Refusals say what there is.
 $ bash record.sh rec.mcap 3 color=1; vpm-normals rec.mcap -o x.vpmc --topic /other; vpm-normals rec.mcap -o x.vpmc --topic /camera/color/image_raw; vpm-normals rec.mcap -o x.vpmc --at 12; vpm-normals rec.mcap -o x.vpmc --at noon; vpm-normals rec.mcap -o clouds_2/ --at +0
-2> vpm-normals: error: rec.mcap: no topic /other in it; it has 3 topics: /camera/depth/image_rect_raw (Image of 16UC1), /camera/color/image_raw (Image of rgb8), /camera/depth/camera_info (CameraInfo); give --topic /camera/depth/image_rect_raw
+2> vpm-normals: error: rec.mcap: no topic /other; its topics: /camera/depth/image_rect_raw (Image of 16UC1), /camera/color/image_raw (Image of rgb8), /camera/depth/camera_info (CameraInfo); give --topic /camera/depth/image_rect_raw
 2> vpm-normals: error: rec.mcap: its topic /camera/color/image_raw is sensor_msgs/msg/Image of rgb8, and none of depth images (Image of 16UC1 or 32FC1, or compressedDepth); give --topic /camera/depth/image_rect_raw
 2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in rec.mcap
 2> vpm-normals: note: rec.mcap: its only topic of depth images is /camera/depth/image_rect_raw
@@ -75,7 +75,7 @@ $ vpm-query --tool cube.vpmg --frames tum --topic /a --poses still.txt --intrins
 2> vpm-query: error: tum: --topic is for recordings in MCAP: leave it out
 2> vpm-query: error: tf.mcap: TF has no poses of the frame gripper; it has those of camera_depth_optical_frame, link, tool0; name one of these, or a topic of poses
 2> vpm-query: error: tf.mcap: TF does not connect the frames tool0 and nowhere; it has poses of camera_depth_optical_frame, link, tool0; name two of these, or give the poses in a file
-2> vpm-query: error: tf.mcap: no topic of poses (PoseStamped; of TF: FILE:FRAME) in it; it has 4 topics: /camera/depth/camera_info (CameraInfo), /camera/depth/image_rect_raw (Image), /tf (TFMessage), /tf_static (TFMessage)
+2> vpm-query: error: tf.mcap: no topic of poses (PoseStamped; of TF: FILE:FRAME) in it; its topics: /camera/depth/camera_info (CameraInfo), /camera/depth/image_rect_raw (Image), /tf (TFMessage), /tf_static (TFMessage)
 [1]
 $ vpm-query --tool cube.vpmg --tool cube.vpmg --frames tf.mcap --poses tf.mcap:base:tool0 --poses tf.mcap:link:tool0
 2> vpm-query: error: tf.mcap:link:tool0: the paths of the tools are in two frames, base and link; name the poses of one world: FILE:WORLD:FRAME
