@@ -1,108 +1,111 @@
 #include "libvpm/recording/frame_tree.h"
 
 #include <algorithm>
-#include <limits>
-#include <optional>
+#include <cmath>
 #include <set>
 #include <utility>
 
-#include "libvpm/core/error.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/timed_path.h"
 
-namespace vpm {
+namespace vpm::mcap {
 namespace {
 
-double seconds_of(std::int64_t nanoseconds) {
-  return 1e-9 * static_cast<double>(nanoseconds);
+constexpr const char* kCure = "name frames that it connects, or give the poses in a file";
+
+// Returns the pose of a frame in another that is as many links above it.
+Pose pose_at(const std::vector<TimedPath>& links, double time) {
+  Pose pose;
+  for (const TimedPath& link : links) pose = link.at(time) * pose;
+  return pose;
 }
 
-TimedPath path_of(const std::map<std::int64_t, Pose>& poses) {
+// Returns the path through the poses; of a frame that stands still, the last of them.
+TimedPath path_of(const std::map<std::uint64_t, Pose>& poses, bool is_fixed) {
   std::vector<double> times;
   std::vector<Pose> at;
-  for (const auto& [time, pose] : poses) {
-    times.push_back(seconds_of(time));
-    at.push_back(pose);
+  for (auto pose = is_fixed ? std::prev(poses.end()) : poses.begin(); pose != poses.end(); ++pose) {
+    times.push_back(seconds_of(pose->first));
+    at.push_back(pose->second);
   }
   return {std::move(times), std::move(at)};
 }
 
 }  // namespace
 
-void FrameTree::add(const std::string& frame, const std::string& parent, std::int64_t time,
-                    const Pose& pose, bool is_fixed) {
-  Link& link = links_[frame];
-  if (!link.poses.empty() && link.parent != parent)
-    refuse("TF puts the frame " + file::shown(frame) + " into two others, " +
-               file::shown(link.parent) + " and " + file::shown(parent),
-           {}, "give the poses in a file");
-  link.parent = parent;
-  link.is_fixed = link.is_fixed && is_fixed;
-  link.poses.emplace(time, pose);
+void FrameTree::add(const StampedPose& pose, std::uint64_t time, bool is_fixed) {
+  const auto& [header, child, n] = pose;
+  if (!std::isfinite(n[0] + n[1] + n[2])) return;
+  try {
+    const Rotation rotation = rotation_from_quaternion({n[3], n[4], n[5], n[6]});
+    Link& link = links_[child];
+    if (!link.poses.empty() && link.parent != header.frame) link.other_parent = link.parent;
+    link.parent = header.frame;
+    link.is_fixed = link.is_fixed && is_fixed;
+    link.poses.emplace(time, Pose{rotation, {n[0], n[1], n[2]}});
+  } catch (const Error&) {  // the numbers are no rotation
+  }
 }
 
-std::vector<std::string> FrameTree::frames() const {
-  std::vector<std::string> frames;
-  for (const auto& [frame, link] : links_) frames.push_back(frame);
-  return frames;
-}
-
-std::vector<std::string> FrameTree::ancestry(const std::string& frame) const {
+std::vector<std::string> FrameTree::ancestry(const std::string& frame,
+                                             const std::string& place) const {
   std::vector<std::string> frames{frame};
   for (auto link = links_.find(frame); link != links_.end(); link = links_.find(frames.back())) {
+    const auto& [parent, other, is_fixed, poses] = link->second;
+    if (!other.empty())
+      refuse("TF puts the frame " + file::shown(frames.back()) + " into two others, " +
+                 file::shown(parent) + " and " + file::shown(other),
+             place, kCure);
     if (frames.size() > links_.size())
-      refuse("the frames of TF go round in a circle, at " + file::shown(frame), {},
-             "give the poses in a file");
-    frames.push_back(link->second.parent);
+      refuse("TF puts the frame " + file::shown(parent) + " into itself", place, kCure);
+    frames.push_back(parent);
   }
   return frames;
 }
 
-FrameMotion FrameTree::motion(const std::string& frame, const std::string& world) const {
-  if (!has(frame) && frame != world)
-    refuse("TF has no poses of the frame " + file::shown(frame) + "; it has those of " +
-               file::listed(frames()),
-           {}, "name one of these, or a topic of poses");
-  std::vector<std::string> up = ancestry(frame);
-  FrameMotion motion{{}, {}, world.empty() ? up.back() : world};
-  std::vector<std::string> down = ancestry(motion.world);
-  if (up.back() != down.back())
-    refuse("TF does not connect the frames " + file::shown(frame) + " and " +
-               file::shown(motion.world) + "; it has poses of " + file::listed(frames()),
-           {}, "name two of these, or give the poses in a file");
-  while (!up.empty() && !down.empty() && up.back() == down.back()) {
-    up.pop_back();
-    down.pop_back();
+FrameMotion FrameTree::motion(const std::string& frame, const std::string& world,
+                              const std::string& place) const {
+  std::vector<std::string> below = ancestry(frame, place);
+  FrameMotion motion{"", world.empty() ? below.back() : world};
+  std::vector<std::string> above = ancestry(motion.world, place);
+  if (below.back() != above.back() || frame == motion.world) {
+    std::vector<std::string> frames;
+    for (const auto& [name, link] : links_) frames.push_back(name);
+    refuse("TF does not tell the pose of the frame " + file::shown(frame) +
+               (world.empty() ? "" : " in " + file::shown(world)) + "; it has poses of " +
+               (frames.empty() ? "none" : file::listed(frames)),
+           place, kCure);
   }
-  std::set<std::int64_t> times;
-  std::int64_t from = std::numeric_limits<std::int64_t>::min(), to = -(from + 1);
+  while (!below.empty() && !above.empty() && below.back() == above.back()) {
+    below.pop_back();
+    above.pop_back();
+  }
+  std::set<std::uint64_t> times;
+  std::uint64_t from = 0, to = UINT64_MAX;
   const auto paths_of = [&](const std::vector<std::string>& names) {
-    std::vector<std::pair<Pose, std::optional<TimedPath>>> paths;  // still, or moving
+    std::vector<TimedPath> paths;
     for (const std::string& name : names) {
       const Link& link = links_.at(name);
-      const auto& [first, last] = std::pair(*link.poses.begin(), *link.poses.rbegin());
-      paths.emplace_back(last.second, std::nullopt);
+      paths.push_back(path_of(link.poses, link.is_fixed));
       if (link.is_fixed) continue;
-      paths.back().second = path_of(link.poses);
       for (const auto& [time, pose] : link.poses) times.insert(time);
-      from = std::max(from, first.first);
-      to = std::min(to, last.first);
+      from = std::max(from, link.poses.begin()->first);
+      to = std::min(to, link.poses.rbegin()->first);
     }
     return paths;
   };
-  const auto below = paths_of(up), above = paths_of(down);
-  const auto pose_at = [](const auto& paths, double time) {
-    Pose pose;
-    for (const auto& [still, moving] : paths) pose = (moving ? moving->at(time) : still) * pose;
-    return pose;
+  const std::vector<TimedPath> up = paths_of(below), down = paths_of(above);
+  const auto add = [&](const std::string& text, double time) {
+    const Pose pose = relative_to(pose_at(down, time), pose_at(up, time));
+    const Quaternion q = quaternion_from_rotation(pose.rotation);
+    const Vec3& t = pose.translation;
+    motion.lines += pose_line(text, {t.x, t.y, t.z, q.x, q.y, q.z, q.w});
   };
-  for (const std::int64_t time : times)
-    if (time >= from && time <= to) motion.times.push_back(time);
-  if (times.empty()) motion.poses.push_back(relative_to(pose_at(above, 0), pose_at(below, 0)));
-  for (const std::int64_t time : motion.times)
-    motion.poses.push_back(
-        relative_to(pose_at(above, seconds_of(time)), pose_at(below, seconds_of(time))));
+  if (times.empty()) add("", 0);
+  for (const std::uint64_t time : times)
+    if (time >= from && time <= to) add(seconds_text(time), seconds_of(time));
   return motion;
 }
 
-}  // namespace vpm
+}  // namespace vpm::mcap

@@ -7,45 +7,40 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/core/pose.h"
+#include "libvpm/recording/mcap/messages.h"
 
-namespace vpm {
+namespace vpm::mcap {
 
-// Poses of a frame in another one, ascending by time.
+// Poses of a frame in another one.
 struct FrameMotion {
-  std::vector<std::int64_t> times;  // ns; empty for one pose that never changes
-  std::vector<Pose> poses;
+  std::string lines;  // by pose_line(), ascending by time; one without a time if it never changes
   std::string world;  // the other frame
 };
 
 class FrameTree {
  public:
-  // Adds a pose of `frame` in `parent` at a time, ns; of several with one time the first counts. A
-  // frame of which all poses are fixed stands still at the last of them. Throws Error(refused) for
-  // a second parent.
-  void add(const std::string& frame, const std::string& parent, std::int64_t time, const Pose& pose,
-           bool is_fixed);
-
-  bool has(const std::string& frame) const { return links_.contains(frame); }
-  std::vector<std::string> frames() const;  // those that have a parent
+  // Adds a pose of `pose.child` in another frame at a time, ns; of several with one time the first
+  // counts. A frame of which all poses are fixed stands still at the last of them. Passes over
+  // numbers that are no pose, as trackers write them where they are lost.
+  void add(const StampedPose& pose, std::uint64_t time, bool is_fixed);
 
   // Returns the poses in `world`, or in the frame without a parent if that is empty: at the times
-  // of all links between them, each interpolated, as far as all have poses. Throws Error(refused)
-  // if the frames are not connected, or go round in a circle.
-  FrameMotion motion(const std::string& frame, const std::string& world) const;
+  // of all links between them, each interpolated, as far as all have poses. Throws Error(refused),
+  // naming `place`, if the frames are not connected, go round in a circle, or have several parents.
+  FrameMotion motion(const std::string& frame, const std::string& world,
+                     const std::string& place) const;
 
  private:
   struct Link {
-    std::string parent;
+    std::string parent, other_parent;  // the other one is empty, if all is well
     bool is_fixed = true;
-    std::map<std::int64_t, Pose> poses;  // by time, ns
+    std::map<std::uint64_t, Pose> poses;  // by time, ns
   };
-  using Chain = std::vector<const Link*>;
 
   // Returns the frame and those above it.
-  std::vector<std::string> ancestry(const std::string& frame) const;
+  std::vector<std::string> ancestry(const std::string& frame, const std::string& place) const;
 
   std::map<std::string, Link> links_;  // by the frame whose pose they are
 };
 
-}  // namespace vpm
+}  // namespace vpm::mcap

@@ -77,15 +77,12 @@ Pose only_pose(const std::string& path, double* deviation) {
 // Returns the poses that the path names in a recording, if it names some.
 std::optional<mcap::Poses> recorded_poses(const std::string& path) {
   const auto name = path == "-" ? std::nullopt : mcap::poses_name(path);
-  return name ? mcap::read_poses(*name) : std::nullopt;
+  return name ? std::optional(mcap::read_poses(*name)) : std::nullopt;
 }
 
 }  // namespace
 
 PoseReader::PoseReader(const std::string& path) : PoseReader(path, recorded_poses(path)) {}
-
-PoseReader::PoseReader(const std::string& name, mcap::Poses poses)
-    : PoseReader(name, std::optional(std::move(poses))) {}
 
 PoseReader::PoseReader(const std::string& path, std::optional<mcap::Poses> poses)
     : name_(path == "-" ? "standard input" : path),

@@ -14,8 +14,8 @@
 #include "libvpm/file/npy.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/remark.h"
-#include "libvpm/recording/mcap/recorded.h"
 #include "libvpm/recording/pose_parser.h"
+#include "libvpm/recording/ros_recording.h"
 
 namespace vpm {
 
@@ -38,7 +38,7 @@ struct PoseLines {
 //   matrix text  four lines of four numbers for each pose, or three for each pose of the file
 //   NPY          an array of matrices, N x 4 x 4 or N x 3 x 4, or of N x 7 numbers, or 8 with the
 //                time first
-//   MCAP         poses in a recording of ROS 2, as mcap/recorded.h names them: "rec.mcap:/topic"
+//   MCAP         poses in a recording of ROS 2, as ros_recording.h names them: "rec.mcap:/topic"
 // Texts are in UTF-8, or in UTF-16 with its mark. A '#' starts a comment, except in a line of JSON.
 // A line of names, in a comment or first in the file, tells the order of the numbers after it;
 // otherwise quaternions end in w. Words beside the names are passed over; a comment that seems to
@@ -47,8 +47,6 @@ struct PoseLines {
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" reads standard input
-  // Reads poses that were found in a recording already; `name` is for messages.
-  PoseReader(const std::string& name, mcap::Poses poses);
 
   // Returns the next pose; empty at the end. Throws Error(refused), naming the line, if it is no
   // pose or the file cannot be read.

@@ -12,8 +12,8 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/mcap/mcap_file.h"
-#include "libvpm/recording/mcap/recorded.h"
 #include "libvpm/recording/pose_reader.h"
+#include "libvpm/recording/ros_recording.h"
 #include "libvpm/recording/timed_path.h"
 
 namespace vpm {
@@ -261,13 +261,13 @@ void take_mcap(const std::string& path, const RecordingOptions& options, Recordi
   recording.remarks = std::move(read.remarks);
   if (options.topic.empty())
     recording.remarks.push_back({false, "its only topic of depth images is " + read.topic});
-  if (options.camera || !options.camera_poses.empty() || read.camera_frame.empty()) return;
-  const std::optional<mcap::Poses> poses =
-      mcap::read_poses({path, {}, options.world, read.camera_frame}, true);
-  if (!poses) return;
-  PoseReader reader(path + ":" + poses->world + ":" + read.camera_frame, *poses);
+  const bool is_elsewhere = !options.world.empty() && options.world != read.camera_frame;
+  if (options.camera || !options.camera_poses.empty() || (!is_elsewhere && !read.is_camera_placed))
+    return;
+  const std::string world = options.world.empty() ? "" : options.world + ":";
+  PoseReader reader(path + ":" + world + read.camera_frame);
   place_by_path(reader, recording);
-  recording.remarks.push_back({false, "the world is the frame " + poses->world +
+  recording.remarks.push_back({false, "the world is the frame " + reader.world() +
                                           " of TF, which has the poses of the camera, " +
                                           read.camera_frame});
 }

@@ -67,7 +67,7 @@ struct RecordingOptions {
   // empty, `camera` holds for all frames. Without that, poses are read from NAME.pose.txt beside
   // each frame (4x4; NAME is the frame's name without its ending, or up to the first dot if it is
   // no time), from ../pose/NAME.txt or ../poses/NAME.txt, or from groundtruth.txt in the folder.
-  // Of MCAP: what poses_name() of mcap/recorded.h takes, or without that TF, if it has the images'
+  // Of MCAP: what ros_recording.h names, or without that TF, if it has the images'
   // frame.
   std::string camera_poses;
   std::optional<Pose> camera;

@@ -43,6 +43,7 @@ constexpr Target kTargets[] = {
     {"config", run_config},
     {"options", run_options},
     {"recording", run_recording},
+    {"mcap", run_mcap},
 };
 
 bool is_on_one_line(const std::string& text) {

@@ -12,6 +12,7 @@ import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(SOURCE / "tests/tools"))
+import mcap_writer  # noqa: E402
 import scene_files  # noqa: E402
 
 VERTICES = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
@@ -241,6 +242,13 @@ def texts():
     yield "recording/listed", between.join((
         "# list\n0.0 1.png\n0.1 2.png", POSES["tum"], INTRINSICS["matrix"], POSES["matrix"]))
     yield "recording/associated", "0.0 1.png 0.0 2.png\n0.1 2.png 0.1 1.png\n"
+    for name, options in {"plain": {"per_chunk": 0, "tf": "base:link"}, "chunks": {"per_chunk": 2, "tool": "/tool"},
+                          "lz4": {"compression": "lz4", "order": ">"}, "zstd": {"compression": "zstd", "encoding": "png"}}.items():
+        wanted = mcap_writer.Recording()
+        wanted.frame = "camera"
+        vars(wanted).update(options)
+        data = mcap_writer.write(mcap_writer.messages_of_wall(1, wanted), wanted)
+        yield "mcap/" + name, data[:-40] if name == "lz4" else data
 
 
 def packages():

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "libvpm/import/import_cloud.h"
 #include "libvpm/import/intrinsics_file.h"
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/recording/recording.h"
@@ -75,6 +76,13 @@ class Folder {
   fs::path path_;
 };
 
+void expect_finite(const Recording& recording) {
+  for (const RecordedFrame& frame : recording.frames) {
+    if (!std::isfinite(frame.time)) fail("a time is not finite");
+    if (frame.camera) fuzz::expect_finite(*frame.camera);
+  }
+}
+
 }  // namespace
 
 void run_recording(Bytes input) {
@@ -92,11 +100,23 @@ void run_recording(Bytes input) {
   }
   expect_error_at_most([&] {
     const Recording recording = read_recording(folder.path().string(), {});
-    for (const RecordedFrame& frame : recording.frames) {
-      if (!std::isfinite(frame.time)) fail("a time is not finite");
-      if (frame.camera) expect_finite(*frame.camera);
-    }
+    expect_finite(recording);
   });
+}
+
+void run_mcap(Bytes input) {
+  const std::string& path = path_of(input);
+  expect_error_at_most([&] {
+    const Recording recording = read_recording(path, {});
+    expect_finite(recording);
+    for (const RecordedFrame& frame : recording.frames)
+      expect_error_at_most([&] { import_scan(bytes_of(frame), frame.path, {}); });
+  });
+  for (const char* const poses : {"", ":tool0", ":base:camera"})
+    expect_error_at_most([&] {
+      PoseReader reader(path + poses);
+      while (const std::optional<Pose> pose = reader.next()) expect_finite(*pose);
+    });
 }
 
 }  // namespace vpm::fuzz

@@ -47,5 +47,7 @@ void run_config(Bytes input);
 void run_options(Bytes input);
 // Takes the files of a folder, separated by lines "--".
 void run_recording(Bytes input);
+// Takes a recording of ROS 2.
+void run_mcap(Bytes input);
 
 }  // namespace vpm::fuzz

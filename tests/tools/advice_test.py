@@ -73,15 +73,13 @@ UNTRIED = [
         "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),
     ("stands in a transcript: cases/mcap.t", [
-        "give its file to vpm-normals, or to vpm-query --frames", "name one of these, or a topic of poses",
-        "name two of these, or give the poses in a file", "`topic` is for recordings in MCAP: leave it out",
+        "give its file to vpm-normals, or to vpm-query --frames", "name frames that it connects, or give the poses in a file",
+        "`topic` is for recordings in MCAP: leave it out",
         "give `intrinsics` fx,fy,cx,cy of its camera", ": give seconds, such as 12.5, or +12.5 after the first image",
         "give --at +0 for the first, or a time among them", "is for a recording in MCAP: leave it out",
         "--at is for one frame: leave it out, or name a file by --output", "name the poses of one world: FILE:WORLD:FRAME",
     ]),
-    ("of recordings of ROS 2 that contradict themselves, that are compressed message by message, or that change while they are read", [
-        "give the poses in a file", "rewrite its folder: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap", "copy it again",
-    ]),
+    ("of recordings of ROS 2 that lie, or that change while they are read: mcap_test.py", ["copy it again"]),
     ("stands in a transcript: cases/pairs.t", [
         "chosen by --pairs", ": leave --unit out", ": give holes, voxel, voxel=RES, flood or flood=RES", 'write {"',
         "write it in quotation marks", "name the part's file", 'write {"parts": ["shaft", "hub"]}',
@@ -110,6 +108,7 @@ UNTRIED = [
     ]),
     ("said by a build without a library, or with CUDA", [
         "install it beside the other libraries of vpm",
+        "build it where liblz4 and libzstd are installed, or convert the file: mcap decompress IN.mcap -o OUT.mcap",
         "give the .vpmg that vpm-pack and vpm-graph make of it",
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",
         "build it where libtiff is installed, or convert the image to a 16-bit PNG", "save it as OBJ, OFF, PLY or STL",

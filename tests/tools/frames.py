@@ -21,18 +21,22 @@ def png(millimetres):
             + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
-kind, folder, count = sys.argv[1], pathlib.Path(sys.argv[2]), int(sys.argv[3])
-(folder / "depth" if kind == "timed" else folder).mkdir(parents=True)
-lines = []
-for k in range(count):
-    image = png(1000 - 10 * k)
-    if kind == "numbered":
-        (folder / f"frame-{k:06}.depth.png").write_bytes(image)
-        (folder / f"frame-{k:06}.pose.txt").write_text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
-    else:
-        name = f"depth/{1000 + k / 30:.6f}.png"
-        (folder / name).write_bytes(image)
-        lines.append(f"{1000 + k / 30:.6f} {name}\n")
-if kind == "timed":
-    (folder / "depth.txt").write_text("# time file\n" + "".join(lines))
-    (folder / "groundtruth.txt").write_text("999 0 0 0 0 0 0 1\n1010 0 0 0 0 0 0 1\n")
+def main(kind, folder, count):
+    (folder / "depth" if kind == "timed" else folder).mkdir(parents=True)
+    lines = []
+    for k in range(count):
+        image = png(1000 - 10 * k)
+        if kind == "numbered":
+            (folder / f"frame-{k:06}.depth.png").write_bytes(image)
+            (folder / f"frame-{k:06}.pose.txt").write_text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+        else:
+            name = f"depth/{1000 + k / 30:.6f}.png"
+            (folder / name).write_bytes(image)
+            lines.append(f"{1000 + k / 30:.6f} {name}\n")
+    if kind == "timed":
+        (folder / "depth.txt").write_text("# time file\n" + "".join(lines))
+        (folder / "groundtruth.txt").write_text("999 0 0 0 0 0 0 1\n1010 0 0 0 0 0 0 1\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], pathlib.Path(sys.argv[2]), int(sys.argv[3]))

@@ -1,11 +1,8 @@
 // Reads the container of recordings in MCAP (mcap.dev/spec): records one after the other, most of
-// them in chunks, plain or compressed by LZ4 or zstd. Its index is not needed.
+// them in chunks. Its index is not needed.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <mutex>
-#include <string>
 #include <vector>
 
 #include "libvpm/import/remark.h"
@@ -13,20 +10,20 @@
 
 namespace vpm::mcap {
 
-// What messages of one source are: "/camera/depth/image_rect_raw", "sensor_msgs/msg/Image", "cdr".
+// Source of messages: "/camera/depth/image_rect_raw", "sensor_msgs/msg/Image", "cdr".
 struct Channel {
   std::string topic, type, encoding;
 };
 
-// Where a message's bytes are: at an offset, in the records of the chunk at a place of the file, or
-// without a chunk (0) in the file.
+// Where a message's bytes are: at an offset in the records of the chunk at a place of the file, or,
+// if that is 0, in the file.
 struct Place {
   std::uint64_t chunk = 0, offset = 0, size = 0;
 };
 
 struct Message {
   const Channel& channel;
-  std::int64_t log_time = 0;  // ns, when it was recorded
+  std::uint64_t log_time = 0;  // ns, when it was recorded
   Bytes bytes;
   Place place;
 };
@@ -37,23 +34,19 @@ class File {
   // Throws Error(refused) if it cannot be read.
   explicit File(std::string path);
 
-  // Shows all channels and messages in the order of the file, as far as that goes, without chunks
-  // that are damaged. Returns what was left out, and why; a message that `see_message` refuses
-  // without a hint counts as damaged. Throws what else that throws, and Error(refused) if reading
-  // fails or a compression is unknown.
-  Remarks scan(const std::function<void(const Channel&)>& see_channel,
-               const std::function<void(const Message&)>& see_message) const;
+  // Shows all messages in the order of the file, as far as that goes, without chunks that are
+  // damaged. Returns what was left out, and why: a message for which `see` throws Damage, too.
+  // Throws what else that throws; Error(refused), naming the file, if reading fails or a
+  // compression is unknown, and Error(unavailable) in builds without liblz4 and libzstd.
+  Remarks scan(const std::function<void(const Message&)>& see) const;
 
-  // Returns the bytes of a message that scan() showed. Keeps the last chunk, where the next message
-  // often is. Thread-safe. Throws Error(refused) if the file has changed.
+  // Returns the bytes of a message that scan() showed. Thread-safe. Throws Error(refused) if the
+  // file has changed.
   std::vector<std::byte> read(const Place& place) const;
 
  private:
   std::string path_;
   std::uint64_t size_ = 0;
-  mutable std::mutex mutex_;
-  mutable std::uint64_t kept_chunk_ = 0;
-  mutable std::vector<std::byte> kept_records_;
 };
 
 // Returns the files of a recording: the file itself if it is MCAP by its first bytes, or those of a

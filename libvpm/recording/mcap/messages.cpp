@@ -1,7 +1,6 @@
 #include "libvpm/recording/mcap/messages.h"
 
 #include <cstdio>
-#include <cstring>
 
 #include "libvpm/file/text.h"
 #include "libvpm/import/scan_facts.h"
@@ -9,7 +8,8 @@
 namespace vpm::mcap {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
+constexpr std::size_t kConfiguration = 12;  // bytes before the PNG of a compressedDepth, for floats
 
 std::string read_frame(ByteCursor& cursor) {
   const std::string name = cursor.text();
@@ -17,9 +17,10 @@ std::string read_frame(ByteCursor& cursor) {
 }
 
 Header read_header(ByteCursor& cursor) {
-  const std::int64_t seconds = cursor.number<std::int32_t>();
-  const std::int64_t time = kSecond * seconds + cursor.number<std::uint32_t>();
-  return {time, read_frame(cursor)};
+  const auto seconds = cursor.number<std::int32_t>();
+  const auto nanoseconds = cursor.number<std::uint32_t>();
+  return {seconds < 0 ? 0 : kSecond * static_cast<std::uint64_t>(seconds) + nanoseconds,
+          read_frame(cursor)};
 }
 
 // Returns the rows of an image as an array of NumPy, without what pads them.
@@ -28,45 +29,53 @@ std::vector<std::byte> array_of(ByteCursor& cursor) {
                       width = cursor.number<std::uint32_t>();
   const std::string coding = cursor.text();
   if (!is_of_depths(kImage, coding))
-    refuse("an image of " + file::shown(coding) + ", not of 16UC1 or 32FC1 as depths are");
+    throw Damage("an image of " + file::shown(coding) + ", not of 16UC1 or 32FC1 as depths are");
   const bool are_floats = coding == "32FC1", is_big_endian = cursor.number<std::uint8_t>() != 0;
   const std::uint64_t row = width * (are_floats ? 4 : 2), step = cursor.number<std::uint32_t>();
-  const Bytes data = cursor.take(cursor.number<std::uint32_t>());
-  if (step < row || height == 0 || data.size() < step * (height - 1) + row)
-    refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) +
-           " pixels in rows of " + std::to_string(step) + " bytes is not in its " +
-           std::to_string(data.size()) + " bytes: the message is damaged");
-  char header[129];  // NumPy's version 1.0: magic, length of what follows, its dictionary
-  std::snprintf(
-      header, sizeof header,
-      "\x93NUMPY\x01%c\x76%c{'descr': '%c%s', 'fortran_order': False, 'shape': (%lu, %lu)}%s", 0, 0,
-      is_big_endian ? '>' : '<', are_floats ? "f4" : "u2", height, width,
-      std::string(100, ' ').c_str());
-  header[127] = '\n';
-  std::vector<std::byte> array(128 + row * height);
-  std::memcpy(array.data(), header, 128);
-  for (std::uint64_t v = 0; v < height && row > 0; ++v)
-    std::memcpy(array.data() + 128 + v * row, data.data() + v * step, row);
+  const Bytes data = cursor.data();
+  if (row == 0 || height == 0 || step < row || data.size() < step * (height - 1) + row)
+    throw Damage("an image of " + std::to_string(width) + " x " + std::to_string(height) +
+                 " pixels in rows of " + std::to_string(step) + " bytes is not in its " +
+                 std::to_string(data.size()) + " bytes: the message is damaged");
+  char start[128];  // of NumPy's version 1.0: magic, length of what follows, its dictionary
+  const int length = std::snprintf(
+      start, sizeof start,
+      "\x93NUMPY\x01%c\x76%c{'descr': '%c%s', 'fortran_order': False, 'shape': (%lu, %lu)}", 0, 0,
+      is_big_endian ? '>' : '<', are_floats ? "f4" : "u2", height, width);
+  std::fill(start + length, std::end(start), ' ');
+  start[sizeof start - 1] = '\n';
+  std::vector<std::byte> array(sizeof start + row * height);
+  auto to = std::ranges::copy(std::as_bytes(std::span(start)), array.begin()).out;
+  for (std::uint64_t v = 0; v < height; ++v)
+    to = std::ranges::copy(data.subspan(v * step, row), to).out;
   return array;
+}
+
+// Returns the number with all its digits, behind a separator.
+std::string digits(const char* separator, double number) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%s%.17g", separator, number);
+  return text;
 }
 
 // Takes numbers, and returns them as a list of JSON.
 std::string list_of(ByteCursor& cursor, std::uint32_t count) {
   std::string list;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%s%.17g", k == 0 ? "" : ",", cursor.number<double>());
-    list += number;
-  }
+  for (std::uint32_t k = 0; k < count; ++k)
+    list += digits(k == 0 ? "" : ",", cursor.number<double>());
   return "[" + list + "]";
 }
 
 }  // namespace
 
-std::string seconds_text(std::int64_t nanoseconds) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%ld.%09ld", nanoseconds / kSecond, nanoseconds % kSecond);
+std::string seconds_text(std::uint64_t nanoseconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%lu.%09lu", nanoseconds / kSecond, nanoseconds % kSecond);
   return text;
+}
+
+double seconds_of(std::uint64_t nanoseconds) {
+  return *file::to_number(seconds_text(nanoseconds));
 }
 
 ImageKind read_image_kind(const std::string& type, Bytes message) {
@@ -78,16 +87,17 @@ ImageKind read_image_kind(const std::string& type, Bytes message) {
 
 bool is_of_depths(const std::string& type, const std::string& coding) {
   if (type == kImage) return coding == "16UC1" || coding == "32FC1" || coding == "mono16";
-  return type == kCompressedImage &&
-         (coding.find("compressedDepth") != coding.npos || coding.starts_with("16UC1"));
+  return type == kCompressedImage && coding.find("compressedDepth") != coding.npos &&
+         !coding.ends_with("rvl");
 }
 
 std::vector<std::byte> image_file(const std::string& type, Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
   read_header(cursor);
   if (type == kImage) return array_of(cursor);
-  cursor.text();
-  const Bytes data = cursor.take(cursor.number<std::uint32_t>());
+  const bool are_millimetres = cursor.text().starts_with("16UC1");
+  Bytes data = cursor.data();
+  if (are_millimetres) data = data.subspan(std::min(data.size(), kConfiguration));
   return {data.begin(), data.end()};
 }
 
@@ -97,7 +107,8 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
   read_header(cursor);
   const std::uint32_t height = next(), width = next();
   cursor.text();  // the model of the distortion
-  std::string json = "{\"d\":" + list_of(cursor, next()) + ",\"k\":" + list_of(cursor, 9);
+  std::string json = "{\"d\":" + list_of(cursor, next());
+  json += ",\"k\":" + list_of(cursor, 9);
   list_of(cursor, 9);  // the rotation that rectifies
   json += ",\"p\":" + list_of(cursor, 12) + "}";
   const std::uint32_t across = std::max(1U, next()), down = std::max(1U, next());  // binning
@@ -126,12 +137,17 @@ std::vector<StampedPose> read_transforms(Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
   std::vector<StampedPose> transforms;
   for (auto left = cursor.number<std::uint32_t>(); left > 0; --left) {
-    Header header = read_header(cursor);
-    StampedPose& pose =
-        transforms.emplace_back(StampedPose{std::move(header), read_frame(cursor), {}});
+    StampedPose& pose = transforms.emplace_back(StampedPose{read_header(cursor), {}, {}});
+    pose.child = read_frame(cursor);
     for (double& number : pose.numbers) number = cursor.number<double>();
   }
   return transforms;
+}
+
+std::string pose_line(const std::string& time, const std::array<double, 7>& numbers) {
+  std::string line = time;
+  for (const double number : numbers) line += digits(" ", number);
+  return line + "\n";
 }
 
 }  // namespace vpm::mcap

@@ -1,9 +1,8 @@
 // Reads messages of ROS 2 (sensor_msgs, geometry_msgs, tf2_msgs) in plain CDR. All functions throw
-// Error(refused), without a place, for messages that are damaged.
+// Damage for messages that contradict themselves.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,13 +13,18 @@ namespace vpm::mcap {
 
 inline constexpr const char* kImage = "sensor_msgs/msg/Image";
 inline constexpr const char* kCompressedImage = "sensor_msgs/msg/CompressedImage";
+inline constexpr const char* kCameraInfo = "sensor_msgs/msg/CameraInfo";
+inline constexpr const char* kPoseStamped = "geometry_msgs/msg/PoseStamped";
+inline constexpr const char* kTransforms = "tf2_msgs/msg/TFMessage";
 
 struct Header {
-  std::int64_t time = 0;  // ns, on the clock of who wrote it; 0 if it was not set
-  std::string frame;      // of TF
+  std::uint64_t time = 0;  // ns, on the clock of who wrote it; 0 if it was not set
+  std::string frame;       // of TF
 };
-// Returns a time of the header in seconds, with all its digits: "1700000000.123456789".
-std::string seconds_text(std::int64_t nanoseconds);
+// Returns a time in seconds, with all its digits: "1700000000.123456789".
+std::string seconds_text(std::uint64_t nanoseconds);
+// Returns the number that this text stands for, so that a time is the same however it is given.
+double seconds_of(std::uint64_t nanoseconds);
 
 // What an image is, without its pixels: "16UC1", or "16UC1; compressedDepth png".
 struct ImageKind {
@@ -43,7 +47,9 @@ struct StampedPose {
   std::string child;                // of TF: the frame whose pose in header.frame it is
   std::array<double, 7> numbers{};  // tx, ty, tz, qx, qy, qz, qw; not checked
 };
-StampedPose read_pose(Bytes message);                     // geometry_msgs/msg/PoseStamped
-std::vector<StampedPose> read_transforms(Bytes message);  // tf2_msgs/msg/TFMessage
+StampedPose read_pose(Bytes message);
+std::vector<StampedPose> read_transforms(Bytes message);
+// Returns a line "time tx ty tz qx qy qz qw", as files of poses have it.
+std::string pose_line(const std::string& time, const std::array<double, 7>& numbers);
 
 }  // namespace vpm::mcap

@@ -9,7 +9,11 @@ $ printf '%s\n' '1000 0 0 0.95 0 0 0 1' '1000.1 0 0 0.95 0 0 0 1' > still.txt
 # The same wall as in a folder of images, whatever it is recorded as, by poses of a file, of a topic, and of TF.
 $ python3 $SOURCE/tests/tools/frames.py timed tum 3; vpm-query --tool cube.vpmg --intrinsics 60,60,31.5,23.5 --frames tum --poses still.txt --quiet | python3 fractions.py
 [0.25, 0.3, 0.35]
-$ for o in pad=0 pad=10 big_endian=1 encoding=32FC1 per_chunk=1 per_chunk=0 index=0 'big_endian=1 encoding=32FC1 pad=3'; do bash record.sh rec.mcap 3 $o; vpm-query --tool cube.vpmg --frames rec.mcap --poses still.txt --quiet | python3 fractions.py; done
+$ for o in pad=0 pad=10 big_endian=1 encoding=32FC1 per_chunk=1 per_chunk=0 index=0 'big_endian=1 encoding=32FC1 pad=3' 'order=> compression=lz4' 'compression=zstd per_chunk=2' encoding=png binned=1; do bash record.sh rec.mcap 3 $o; vpm-query --tool cube.vpmg --frames rec.mcap --poses still.txt --quiet | python3 fractions.py; done
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
+[0.25, 0.3, 0.35]
 [0.25, 0.3, 0.35]
 [0.25, 0.3, 0.35]
 [0.25, 0.3, 0.35]
@@ -47,15 +51,15 @@ $ bash record.sh rec.mcap 2 per_chunk=1; for n in $(seq 9 331 $(($(stat -c %s re
 2> vpm-normals: note: the image of 1000.000000000 s is read, of 1
 $ python3 -c 'b = bytearray(open("rec.mcap", "rb").read()); b[7000] ^= 1; open("bad.mcap", "wb").write(b)'; vpm-normals bad.mcap -o bad.vpmc
 2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in bad.mcap
-2> vpm-normals: warning: bad.mcap: chunks or records that are damaged, and left out with all that they hold: 1
+2> vpm-normals: warning: bad.mcap: chunks or records that are damaged, or contradict others, and are left out with all that they hold: 1
 2> vpm-normals: note: bad.mcap: its only topic of depth images is /camera/depth/image_rect_raw
 2> vpm-normals: note: the camera does not move: bad.mcap has no poses of it, and no --camera-poses are given
 2> vpm-normals: note: the image of 1000.000000000 s is read, of 2
 
 # Refusals say what there is.
 $ bash record.sh rec.mcap 3 color=1; vpm-normals rec.mcap -o x.vpmc --topic /other; vpm-normals rec.mcap -o x.vpmc --topic /camera/color/image_raw; vpm-normals rec.mcap -o x.vpmc --at 12; vpm-normals rec.mcap -o x.vpmc --at noon; vpm-normals rec.mcap -o clouds_2/ --at +0
-2> vpm-normals: error: rec.mcap: no topic /other; its topics: /camera/depth/image_rect_raw (Image of 16UC1), /camera/color/image_raw (Image of rgb8), /camera/depth/camera_info (CameraInfo); give --topic /camera/depth/image_rect_raw
-2> vpm-normals: error: rec.mcap: its topic /camera/color/image_raw is sensor_msgs/msg/Image of rgb8, and none of depth images (Image of 16UC1 or 32FC1, or compressedDepth); give --topic /camera/depth/image_rect_raw
+2> vpm-normals: error: rec.mcap: no topic /other in it; give --topic /camera/depth/image_rect_raw
+2> vpm-normals: error: rec.mcap: its topic /camera/color/image_raw is sensor_msgs/msg/Image of rgb8, and none of depth images (16UC1, 32FC1 or compressedDepth of PNG); give --topic /camera/depth/image_rect_raw
 2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in rec.mcap
 2> vpm-normals: note: rec.mcap: its only topic of depth images is /camera/depth/image_rect_raw
 2> vpm-normals: note: the camera does not move: rec.mcap has no poses of it, and no --camera-poses are given
@@ -73,9 +77,9 @@ $ bash record.sh no_info.mcap 3 info=; vpm-normals no_info.mcap -o x.vpmc; vpm-n
 [1]
 $ vpm-query --tool cube.vpmg --frames tum --topic /a --poses still.txt --intrinsics 60,60,31.5,23.5; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap:gripper; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap:nowhere:tool0; vpm-query --tool cube.vpmg --frames tf.mcap --poses tf.mcap
 2> vpm-query: error: tum: --topic is for recordings in MCAP: leave it out
-2> vpm-query: error: tf.mcap: TF has no poses of the frame gripper; it has those of camera_depth_optical_frame, link, tool0; name one of these, or a topic of poses
-2> vpm-query: error: tf.mcap: TF does not connect the frames tool0 and nowhere; it has poses of camera_depth_optical_frame, link, tool0; name two of these, or give the poses in a file
-2> vpm-query: error: tf.mcap: no topic of poses (PoseStamped; of TF: FILE:FRAME) in it; its topics: /camera/depth/camera_info (CameraInfo), /camera/depth/image_rect_raw (Image), /tf (TFMessage), /tf_static (TFMessage)
+2> vpm-query: error: tf.mcap: TF does not tell the pose of the frame gripper; it has poses of camera_depth_optical_frame, link, tool0; name frames that it connects, or give the poses in a file
+2> vpm-query: error: tf.mcap: TF does not tell the pose of the frame tool0 in nowhere; it has poses of camera_depth_optical_frame, link, tool0; name frames that it connects, or give the poses in a file
+2> vpm-query: error: tf.mcap: no topic of poses (PoseStamped; of TF: FILE:FRAME) in it; it has /camera/depth/camera_info (CameraInfo), /camera/depth/image_rect_raw (Image), /tf (TFMessage), /tf_static (TFMessage)
 [1]
 $ vpm-query --tool cube.vpmg --tool cube.vpmg --frames tf.mcap --poses tf.mcap:base:tool0 --poses tf.mcap:link:tool0
 2> vpm-query: error: tf.mcap:link:tool0: the paths of the tools are in two frames, base and link; name the poses of one world: FILE:WORLD:FRAME

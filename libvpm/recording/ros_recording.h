@@ -1,9 +1,8 @@
 // Finds depth images and poses in recordings of ROS 2 in MCAP. A recording is a file, or a folder
-// of files .mcap. All functions throw Error(refused), naming the recording and what it has, if it
-// has not what is asked, and what mcap::File throws.
+// of files .mcap. Functions throw Error(refused), naming the recording and what it has, if it has
+// not what is asked, and what mcap::File throws.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,6 +23,7 @@ struct Frame {
 struct Frames {
   std::vector<Frame> frames;        // ascending by time
   std::string topic, camera_frame;  // the frame of TF that the images name
+  bool is_camera_placed = false;    // true if TF has poses of that frame
   std::string camera_info;          // the topic beside theirs that intrinsics come from
   std::optional<IntrinsicsFile> intrinsics;
   std::string no_intrinsics;  // why there are none
@@ -33,15 +33,13 @@ struct Frames {
 // Returns the images of `topic`, or of the only topic of depth images if that is empty.
 Frames read_frames(const std::string& recording, const std::string& topic);
 
-// Names poses in a recording: "rec.mcap:/topic" of PoseStamped, "rec.mcap:FRAME" of TF in the frame
-// that has no parent, or "rec.mcap:WORLD:FRAME". The recording alone stands for its only topic of
-// poses.
+// Poses in a recording: "/topic" of PoseStamped, or of TF "FRAME", in the frame that has no parent,
+// or "WORLD:FRAME"; "" is the only topic of PoseStamped.
 struct PosesName {
-  std::string recording, topic;  // the topic begins with '/'; empty for TF
-  std::string world, frame;      // of TF; the world may be empty
+  std::string recording, poses;
 };
 
-// Returns what the text names; empty if it begins with no recording in MCAP.
+// Returns what a text names such as "rec.mcap:/topic"; empty if it begins with no recording.
 std::optional<PosesName> poses_name(const std::string& text);
 
 struct Poses {
@@ -51,9 +49,6 @@ struct Poses {
   std::string world;  // the frame that they are in
   Remarks remarks;
 };
-
-// Returns the poses; empty if `may_lack` them and TF tells nothing of the frame. Throws
-// Error(refused) also if TF does not connect it with the world.
-std::optional<Poses> read_poses(const PosesName& name, bool may_lack = false);
+Poses read_poses(const PosesName& name);
 
 }  // namespace vpm::mcap
