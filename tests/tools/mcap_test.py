@@ -51,18 +51,22 @@ def motion(k):
 
 
 def messages():
-    """Yields topic, type, message and time, ns, of a camera on a mast that moves, and of a tool."""
-    def transform(cdr, time, parent, child, place):
-        cdr.header(time, parent).text(child).add("d", *place, 0, 0, 0, 1)
-    still = Stamped().add("I", 1)
+    """Yields topic, type, message and time, ns, of a camera on a mast that moves, and of a tool, which TF tells as tool0 of the world and,
+    at every second time only, as tool1 of a base that is turned by 90 degrees."""
+    def transform(cdr, time, parent, child, place, turn=0):
+        cdr.header(time, parent).text(child).add("d", *place, 0, 0, turn * 0.5**0.5, 0.5**0.5 if turn else 1)
+    still = Stamped().add("I", 2)
     transform(still, 0, "mast", FRAME, (0, 0.125, 0.0625))
+    transform(still, 0, "world", "base", (0.5, -0.25, 0.125), 1)
     yield "/tf_static", mcap.TF, still.message(), stamp(0)
     for k in range(COUNT):
         time = stamp(k)
         mast, tool = motion(k)
-        moving = Stamped().add("I", 2)
+        moving = Stamped().add("I", 2 + (k % 2 == 0 or k == COUNT - 1))
         transform(moving, time, "world", "mast", mast)
         transform(moving, time, "world", "tool0", tool)
+        if k % 2 == 0 or k == COUNT - 1:
+            transform(moving, time, "base", "tool1", (tool[1] + 0.25, 0.5 - tool[0], tool[2] - 0.125), -1)
         yield "/tf", mcap.TF, moving.message(), time
         yield "/tool", mcap.POSE, Stamped().header(time, "world").add("d", *tool, 0, 0, 0, 1).message(), time
         info = Stamped().header(time, FRAME).add("I", frames.HEIGHT, frames.WIDTH).text("plumb_bob").add("I", 0)
@@ -135,6 +139,15 @@ def check_answers(folder, files, rec):
     assert len(fractions) > COUNT, "the tool does not move through the scene"
     for poses in ("/tool", "tool0", "world:tool0"):
         assert ask("--frames", rec, "--topic", TOPIC, "--trajectory", f"{rec}:{poses}") == expected, f"{rec}:{poses} gives other answers"
+    answers = [json.loads(line) for line in expected.splitlines()]
+    for poses, turned in (("tool1", 0), ("base:tool0", 1), ("base:tool1", 1)):
+        others = [json.loads(line) for line in ask("--frames", rec, "--poses", f"{rec}:{poses}").splitlines()]
+        assert len(others) == len(answers), f"{poses}: {len(others)} answers"
+        for answer, other in zip(answers, others):
+            x, y, z = other["force"]
+            force = (-y, x, z) if turned else (x, y, z)
+            for mine, its in zip((answer["volume"], *answer["force"]), (other["volume"], *force)):
+                assert abs(mine - its) < 1e-6 * 0.008, f"{poses}: {other} in place of {answer}"
     at, last = seconds(stamp(5)), seconds(stamp(COUNT - 1))
     for name, options in (("a", ["--at", at]), ("b", ["--at", f"+{19 * 0.033333333}"]), ("first", [])):
         output_of("vpm-normals", rec, "--topic", TOPIC, "-o", folder / f"{name}.vpmc", "--force", "--quiet", *options)
