@@ -142,7 +142,8 @@ class SceneOfLinks {
   SceneOfLinks(QuerySetup& setup, const Pose& first)
       : scene_(setup),
         query_(setup.tools, setup.options, setup.level, scene_.scene(), first),
-        tells_contacts_(setup.arguments.contacts > 0) {}
+        tells_contacts_(setup.arguments.contacts > 0),
+        is_shown_(setup.view.has_value()) {}
 
   // Adds what the scene gives for each link to its answer and to a line, and to the line the sum of
   // all, whose torque is about the origin.
@@ -170,6 +171,7 @@ class SceneOfLinks {
  private:
   LinkAnswer answer(std::size_t k, const Pose& pose) {
     LinkAnswer answer{pose, query_.run(scene_.scene(), pose, k), {}, query_.contacts(k)};
+    if (!is_shown_) return answer;  // a device would have to fetch the states
     for (const SphereState state : query_.states(k))
       answer.states.push_back(static_cast<std::uint8_t>(state));
     return answer;
@@ -177,7 +179,7 @@ class SceneOfLinks {
 
   CloudScene scene_;
   LevelQuery query_;
-  bool tells_contacts_;
+  bool tells_contacts_, is_shown_;
 };
 
 // The columns of CSV: of all, then of each link and of each pair that may be told. Their texts live
