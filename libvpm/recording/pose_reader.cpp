@@ -42,8 +42,9 @@ void refuse_foreign(const std::string& line, const std::string& name) {
   const std::string start = line + "\n";
   const auto other = file::sniff(std::as_bytes(std::span(start.data(), start.size())));
   if (!other) return;
+  const bool is_bag = other->what.find(" ROS") != std::string::npos;  // it may hold poses, too
   refuse("this is " + other->what, name,
-         other->holds == file::Holds::anything
+         is_bag || other->holds == file::Holds::anything
              ? other->next
              : "write poses as lines tx ty tz qx qy qz qw, as JSON or as .npy");
 }

@@ -298,7 +298,7 @@ fs::path pose_beside(const RecordedFrame& frame) {
   const std::string name = path.stem().string();
   std::vector<fs::path> places{folder / (name + ".pose.txt")};
   if (!is_decimal(path)) places.push_back(folder / (stem_of(path) + ".pose.txt"));
-  const fs::path beside = places.back();
+  fs::path beside = places.back();
   for (const char* const other : {"pose", "poses"})
     places.push_back(folder / ".." / other / (name + ".txt"));
   for (const fs::path& place : places)

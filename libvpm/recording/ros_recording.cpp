@@ -94,8 +94,8 @@ struct Images {
 
 // Takes the camera_info beside the images' topic, without what names their compression, or, as some
 // drivers have it, below it.
-void find_intrinsics(const std::map<std::string, std::vector<std::byte>>& infos, std::string base,
-                     const std::string& recording, Frames& frames) {
+void find_intrinsics(const std::map<std::string, std::vector<std::byte>>& infos,
+                     const std::string& base, const std::string& recording, Frames& frames) {
   const std::string beside = base.substr(0, base.rfind('/') + 1) + "camera_info";
   frames.camera_info = infos.contains(beside) ? beside : base + "/camera_info";
   const auto found = infos.find(frames.camera_info);
@@ -132,9 +132,9 @@ Frames read_frames(const std::string& recording, const std::string& topic) {
     frames.frames.push_back({seconds_of(time), seconds_text(time), read});
   frames.camera_frame = of_topic.frame;
   frames.is_camera_placed = placed.contains(frames.camera_frame);
-  const bool is_compressed = of_topic.type == kCompressedImage;
-  find_intrinsics(infos, frames.topic.substr(0, is_compressed ? frames.topic.rfind('/') : -1),
-                  recording, frames);
+  const std::size_t end =
+      of_topic.type == kCompressedImage ? frames.topic.rfind('/') : frames.topic.size();
+  find_intrinsics(infos, frames.topic.substr(0, end), recording, frames);
   if (const std::size_t doubled = of_topic.count - frames.frames.size(); doubled > 0)
     frames.remarks.push_back({false, "images left out, since they have the time of one before: " +
                                          std::to_string(doubled)});

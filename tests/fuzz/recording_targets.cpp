@@ -110,7 +110,7 @@ void run_mcap(Bytes input) {
     const Recording recording = read_recording(path, {});
     expect_finite(recording);
     for (const RecordedFrame& frame : recording.frames)
-      expect_error_at_most([&] { import_scan(bytes_of(frame), frame.path, {}); });
+      expect_error_at_most([&] { const auto scan = import_scan(bytes_of(frame), frame.path, {}); });
   });
   for (const char* const poses : {"", ":tool0", ":base:camera"})
     expect_error_at_most([&] {

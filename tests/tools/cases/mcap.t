@@ -84,3 +84,11 @@ $ vpm-query --tool cube.vpmg --frames tum --topic /a --poses still.txt --intrins
 $ vpm-query --tool cube.vpmg --tool cube.vpmg --frames tf.mcap --poses tf.mcap:base:tool0 --poses tf.mcap:link:tool0
 2> vpm-query: error: tf.mcap:link:tool0: the paths of the tools are in two frames, base and link; name the poses of one world: FILE:WORLD:FRAME
 [1]
+
+# Other recordings are named with the command that converts them.
+$ printf '#ROSBAG V2.0\n' > a.bag; mkdir bag2; printf 'SQLite format 3\0' > bag2/a_0.db3; for o in '--frames a.bag --poses still.txt' '--frames bag2 --poses still.txt' '--frames tum --poses a.bag' '--frames tum --poses bag2/a_0.db3'; do vpm-query --tool cube.vpmg --intrinsics 60,60,31.5,23.5 $o; done
+2> vpm-query: error: a.bag: this is a ROS bag; convert it to MCAP: rosbags-convert --src BAG --dst OUT --dst-storage mcap
+2> vpm-query: error: bag2: no frames in it, but a recording of ROS, a_0.db3; convert it to MCAP: rosbags-convert --src bag2 --dst OUT --dst-storage mcap
+2> vpm-query: error: a.bag: this is a ROS bag; convert it to MCAP: rosbags-convert --src BAG --dst OUT --dst-storage mcap
+2> vpm-query: error: bag2/a_0.db3: this is a database of SQLite, such as a bag of ROS 2; convert the bag's folder to MCAP: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap
+[1]
