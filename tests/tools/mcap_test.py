@@ -24,6 +24,7 @@ import mcap_writer as mcap
 
 HERE = pathlib.Path(__file__).resolve().parent
 SKIPPED = 77
+PATIENCE = 60  # s, in which npm installs what is small
 COUNT, START = 20, 1700000000  # frames, 30 a second; s
 CAMERA = (60, 60, 31.5, 23.5)
 TOPIC, FRAME = "/camera/depth/image_rect_raw", "camera_depth_optical_frame"
@@ -116,9 +117,13 @@ def npm_folder(folder):
         print("skipped: npm and node are not installed")
         return None
     packages = "@mcap/core@2", "@foxglove/wasm-zstd@1"
-    installed = run("npm", "install", "--no-audit", "--no-fund", "--silent", "--prefix", folder, *packages, timeout=60)
-    if installed.returncode != 0:
-        print("skipped: npm cannot install", *packages)
+    try:
+        installed = run("npm", "install", "--no-audit", "--no-fund", "--fetch-retries=0", "--prefix", folder, *packages, timeout=PATIENCE)
+        fault = installed.returncode and installed.stderr.decode()[:200]
+    except subprocess.TimeoutExpired:
+        fault = f"it takes more than {PATIENCE} s"
+    if fault:
+        print("skipped: npm cannot install", *packages, fault)
         return None
     shutil.copy(HERE / "mcap_npm.mjs", folder)
     return folder
