@@ -195,7 +195,7 @@ Remarks File::scan(const std::function<void(const Message&)>& see) const try {
     if (kind >= Kind::schema && kind <= Kind::chunk)
       scan.take(kind, read_part(input, body, there), {0, kind == Kind::chunk ? at : body, 0},
                 is_cut);
-    if (!is_cut) at = body + length;
+    if (!is_cut || kind == Kind::chunk) at = body + there;
   }
   Remarks remarks;
   if (scan.damaged > 0)

@@ -45,7 +45,7 @@ depth.txt
 # What is truncated is read as far as it goes, which is said wherever it ends.
 $ bash record.sh rec.mcap 2 per_chunk=1; for n in $(seq 9 331 $(($(stat -c %s rec.mcap) - 60))); do head -c $n rec.mcap > cut.mcap; vpm-normals cut.mcap -o cut.vpmc --force 2> said.txt; s=$?; test $s -le 1 && grep -q "it has no end, as where its recorder was stopped" said.txt || echo "$n bytes: $s"; done; head -c 9000 rec.mcap > cut.mcap; vpm-normals cut.mcap -o cut.vpmc --force
 2> vpm-normals: note: intrinsics 60,60,31.5,23.5 are read from /camera/depth/camera_info in cut.mcap
-2> vpm-normals: warning: cut.mcap: it has no end, as where its recorder was stopped: it is read as far as it goes, 7390 of 9000 bytes
+2> vpm-normals: warning: cut.mcap: it has no end, as where its recorder was stopped: it is read as far as it goes, 9000 of 9000 bytes
 2> vpm-normals: note: cut.mcap: its only topic of depth images is /camera/depth/image_rect_raw
 2> vpm-normals: note: the camera does not move: cut.mcap has no poses of it, and no --camera-poses are given
 2> vpm-normals: note: the image of 1000.000000000 s is read, of 1
