@@ -85,9 +85,7 @@ std::vector<DepthBody> depth_images_of(std::span<const Body> bodies) {
 }
 
 Body Body::of_cameras(std::span<const Body> images) {
-  std::vector<DepthBody> different = different_images(depth_images_of(images));
-  return HandleAccess::make<Body>(different.size() == 1 ? AnyBody(different.front())
-                                                        : AnyBody(RigBody(std::move(different))));
+  return HandleAccess::make<Body>(body_of_cameras(depth_images_of(images)));
 }
 
 std::size_t Body::points() const {

@@ -111,4 +111,12 @@ class AnyBody {
   Held held_;
 };
 
+// Returns the one body that images of several cameras are (rig/); one image alone is itself. Throws
+// what PreparedRig throws.
+inline AnyBody body_of_cameras(std::vector<DepthBody> images) {
+  std::vector<DepthBody> different = different_images(std::move(images));
+  return different.size() == 1 ? AnyBody(different.front())
+                               : AnyBody(RigBody(std::move(different)));
+}
+
 }  // namespace vpm

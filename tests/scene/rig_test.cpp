@@ -130,28 +130,68 @@ TEST_F(Rig, OrderOfCamerasAndOneTwiceChangeNoBit) {
   EXPECT_GT(most, 0.8);
 }
 
-TEST_F(Rig, SideOfABallHoldsForAllPlacesInIt) {
-  int decided[3] = {};
+// Counts balls by what is told of them, and expects it of places in them.
+struct Decided {
+  int free = 0, behind = 0;
+};
+Decided expect_sides_to_hold(const RigBody& rig) {
+  const RigSurface surface = rig.surface();
+  const Pose to_rig = inverse(rig.to_world());
+  Decided decided;
   const std::vector<Vec3> centers = places(4000, 0.2);
   for (std::size_t k = 0; k < centers.size(); ++k) {
-    const Vec3 center = to_rig_ * centers[k];
+    const Vec3 center = to_rig * centers[k];
     const double radius = 0.001 + 0.03 * std::abs(std::sin(4.1 * static_cast<double>(k)));
-    const RigSurface::BallClass in_ball = surface_.classify_ball(center, radius);
-    const Side side = surface_.side_of(in_ball, center, radius);
+    const RigSurface::BallClass in_ball = surface.classify_ball(center, radius);
+    const Side side = surface.side_of(in_ball, center, radius);
     if (side == Side::ambiguous) continue;
-    ++decided[side == Side::behind ? 2 : in_ball.sight == Sight::seen];
+    decided.behind += side == Side::behind;
+    decided.free += side == Side::free && in_ball.sight == Sight::seen;
     for (const Vec3& off : places(20, 0.57)) {
       const Vec3 x = center + radius * off;
-      const SurfaceSample seen = surface_.sample(x);
+      const SurfaceSample seen = surface.sample(x);
       EXPECT_TRUE(side == Side::behind ? seen.known && seen.distance < 0
                                        : !seen.known || seen.distance > 0)
           << k;
       if (in_ball.sight == Sight::mixed) continue;
-      EXPECT_EQ(surface_.sight_at(x), in_ball.sight) << k;
+      EXPECT_EQ(surface.sight_at(x), in_ball.sight) << k;
     }
   }
-  EXPECT_GT(decided[1], 300);  // free
-  EXPECT_GT(decided[2], 30);   // behind
+  return decided;
+}
+
+TEST_F(Rig, SideOfABallHoldsForAllPlacesInIt) {
+  const Decided decided = expect_sides_to_hold(rig_);
+  EXPECT_GT(decided.free, 300);
+  EXPECT_GT(decided.behind, 30);
+}
+TEST(RigOfAnyScene, SideOfABallHoldsUnderNoiseAndForOblongPixels) {
+  std::vector<DepthBody> images;
+  for (const Camera& camera : with_larger_pixels(ring_of_cameras(4), 2, 3))
+    images.emplace_back(make_cloud(
+        synthetic::render_with_kinect_noise(*scene(), camera, images.size()), camera, {}));
+  EXPECT_GT(expect_sides_to_hold(RigBody(images)).free, 100);
+}
+
+// Whoever asks only what is nearer than some distance gets that with the bits of all.
+TEST_F(Rig, SamplesUpToADistanceAreThoseWithoutIt) {
+  int exact = 0, further = 0;
+  for (const Vec3& place : places(8000, 0.3)) {
+    const Vec3 x = to_rig_ * place;
+    const double enough = 0.002 + 0.01 * std::abs(std::sin(1e4 * place.x));
+    const SurfaceSample all = surface_.sample(x),
+                        near = surface_.sample_near(x, surface_.all_cameras(), enough);
+    ASSERT_EQ(all.known, near.known);
+    if (!all.known) continue;
+    if (all.distance < enough) {
+      expect_same_bits(all, near, ++exact);
+    } else {
+      EXPECT_GE(near.distance, enough);
+      further += near.distance != all.distance;
+    }
+  }
+  EXPECT_GT(exact, 100);
+  EXPECT_GT(further, 500);
 }
 
 TEST_F(Rig, CamerasThatDecideInABallTellWhatAllTell) {

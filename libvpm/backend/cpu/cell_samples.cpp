@@ -11,12 +11,14 @@ namespace {
 
 using FourSamples = SurfaceSampleOf<Double4>;
 
-[[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x) {
+// Samples a surface; where it is surely further than `enough`, m, before x, maybe only that.
+[[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x,
+                                                    const Double4& /*enough*/) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});
 }
 [[gnu::always_inline]] inline FourSamples sample_at(const RigSurface::View& surface,
-                                                    const Vec3x4& x) {
-  return surface.rig->sample_near(x, surface.cameras);
+                                                    const Vec3x4& x, const Double4& enough) {
+  return surface.rig->sample_near(x, surface.cameras, enough);
 }
 // Joins four known samples into lanes.
 [[gnu::always_inline]] inline FourSamples joined(const SurfaceSample& a, const SurfaceSample& b,
@@ -39,7 +41,8 @@ using FourSamples = SurfaceSampleOf<Double4>;
 template <class Surface>
 [[gnu::always_inline]] inline void sample_lanes(const Surface& surface, const Vec3 (&places)[4],
                                                 SurfaceSample (&on_surface_at)[4]) {
-  const FourSamples four = sample_at(surface, {places[0], places[1], places[2], places[3]});
+  const FourSamples four =
+      sample_at(surface, {places[0], places[1], places[2], places[3]}, Double4{} + HUGE_VAL);
   for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
 }
 
@@ -54,7 +57,7 @@ template <class Surface>
     const auto [a, b, c, d] = four_of(samples, first);
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const FourSamples four = sample_at(surface, x);
+    const FourSamples four = sample_at(surface, x, radius);  // no piece reaches further
     const Mask4 wanted = negated(four.known) |
                          (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
     if (!any(wanted)) continue;

@@ -76,9 +76,10 @@ DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
   std::vector<RigCamera> cameras(surface_.cameras, surface_.cameras + count);
   images_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const ImageSilhouettes& found = rig.silhouettes()[i];
+    const ImageSilhouettes& found = rig.images()[i].silhouettes();
     cameras[i].image = images_.emplace_back(rig.images()[i].prepared()).surface();
-    cameras[i].silhouettes = {memory_.copy(found.pixels()), memory_.copy(found.nearest())};
+    cameras[i].silhouettes = {memory_.copy(found.pixels()), memory_.copy(found.nearest()),
+                              memory_.copy(found.sums()), cameras[i].silhouettes.columns};
   }
   surface_.cameras = memory_.copy(cameras);
   surface_.agreement = memory_.copy(rig.agreement().of_pairs);

@@ -1,8 +1,23 @@
 #include "libvpm/scene/depth/depth_body.h"
 
+#include <mutex>
+
 #include "libvpm/scene/frame_slot.h"
+#include "libvpm/scene/rig/silhouettes.h"
 
 namespace vpm {
+
+struct SharedSilhouettes {
+  std::once_flag once;
+  ImageSilhouettes found;
+};
+
+DepthBody::DepthBody(PreparedImage image)
+    : image_(std::make_shared<const PreparedImage>(std::move(image))),
+      silhouettes_(std::make_shared<SharedSilhouettes>()) {}
+
+DepthBody::DepthBody(std::shared_ptr<const FrameSlot> slot)
+    : slot_(std::move(slot)), silhouettes_(std::make_shared<SharedSilhouettes>()) {}
 
 const Pose& DepthBody::to_world() const {
   return (slot_ ? slot_->camera() : image_->camera()).to_world;
@@ -18,6 +33,12 @@ std::uint64_t DepthBody::serial() const {
 
 const PreparedImage& DepthBody::prepared() const {
   return slot_ ? slot_->prepared() : *image_;
+}
+
+const ImageSilhouettes& DepthBody::silhouettes() const {
+  std::call_once(silhouettes_->once,
+                 [&] { silhouettes_->found = ImageSilhouettes(prepared().surface()); });
+  return silhouettes_->found;
 }
 
 }  // namespace vpm

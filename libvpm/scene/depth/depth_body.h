@@ -10,7 +10,9 @@
 
 namespace vpm {
 
-class FrameSlot;  // frame_slot.h
+class FrameSlot;         // frame_slot.h
+class ImageSilhouettes;  // rig/silhouettes.h
+struct SharedSilhouettes;
 namespace cuda {
 class DeviceDepthBody;
 }
@@ -24,10 +26,9 @@ class DepthBody {
   // Prepares a cloud that keeps its depth image. Throws what PreparedImage throws.
   explicit DepthBody(const Cloud& cloud, Denoising points = Denoising::on)
       : DepthBody(PreparedImage(cloud, points)) {}
-  explicit DepthBody(PreparedImage image)
-      : image_(std::make_shared<const PreparedImage>(std::move(image))) {}
+  explicit DepthBody(PreparedImage image);
   // Takes a frame that is prepared, or being prepared, maybe on a device.
-  explicit DepthBody(std::shared_ptr<const FrameSlot> slot) : slot_(std::move(slot)) {}
+  explicit DepthBody(std::shared_ptr<const FrameSlot> slot);
 
   // Returns what maps the surface's frame, which is the camera's, to the world's.
   const Pose& to_world() const;
@@ -37,6 +38,8 @@ class DepthBody {
   // PreparedImage throws.
   const PreparedImage& prepared() const;
   DepthSurface surface() const { return prepared().surface(); }
+  // Returns the silhouettes of the prepared image. The first call finds them, for all copies.
+  const ImageSilhouettes& silhouettes() const;
   std::uint64_t serial() const;
 
   // Returns the memory of a frame that DepthFrames has prepared, else null.
@@ -45,6 +48,7 @@ class DepthBody {
  private:
   std::shared_ptr<const PreparedImage> image_;  // one of these is null
   std::shared_ptr<const FrameSlot> slot_;
+  std::shared_ptr<SharedSilhouettes> silhouettes_;
 };
 
 }  // namespace vpm

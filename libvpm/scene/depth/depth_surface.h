@@ -105,6 +105,33 @@ struct DepthSurface : DepthSampler {
     return in_ball;
   }
 
+  // Returns the side of a classified ball that is ambiguous by the depths of its tiles, by those
+  // of smaller tiles off the plane at its middle. Inverse depth is affine in the pixel on a plane,
+  // so the surface lies between two planes that differ from this by the least and the greatest
+  // difference over the ball's pixels; a ball may be clear of both where it is not of all depths
+  // between.
+  VPM_HD Side side_by_plane(const BallClass& in_ball, Vec3 center, double radius) const {
+    constexpr double kRounding = 1e-9;
+    if (in_ball.side != Side::ambiguous || !(center.z - radius >= kSmallestLength))
+      return in_ball.side;
+    const AffineDepth plane = plane_of_middle(in_ball.pixels);
+    const AffineRange off = range_off(plane, in_ball);
+    // On the ray of x, inverse depth times x.z is that of x and these.
+    const Vec3 across{plane.per_u * k.fx, plane.per_v * k.fy,
+                      plane.per_u * k.cx + plane.per_v * k.cy};
+    const auto reach = [&](double constant, double& middle) {
+      const Vec3 g = across + Vec3{0, 0, constant};
+      middle = dot(g, center);
+      return radius * norm(g);
+    };
+    double middle = 0;
+    const double before = reach(off.high, middle);
+    if (middle + before < 1 - kRounding) return Side::free;
+    if (in_ball.leaves_image || !(in_ball.range.low > 0)) return in_ball.side;
+    const double after = reach(off.low, middle);
+    return middle - after > 1 + kRounding ? Side::behind : in_ball.side;
+  }
+
   // Returns what is seen of all places in a classified ball.
   static VPM_HD Sight sight_of(const BallClass& in_ball) {
     if (in_ball.leaves_image) return is_empty(in_ball.pixels) ? Sight::out_of_view : Sight::mixed;
@@ -207,6 +234,8 @@ struct DepthSurface : DepthSampler {
   static constexpr std::int32_t kFewPixels = 4;
   // Balls of more pixels are not tested pixel by pixel, since their parts soon are.
   static constexpr std::int64_t kMostPixels = 1024;
+  // Least length of a ray, one unit deep, along the normal of a plane that it shows.
+  static constexpr double kGrazingPlane = 0.1;
 
   static VPM_HD bool spans_few_pixels(const BallClass& in_ball) {
     const PixelRectangle& p = in_ball.pixels;
@@ -235,6 +264,49 @@ struct DepthSurface : DepthSampler {
       if (dot(normal, middle) > kSmoothCosine) sum += normal;
     }
     return normalized_or_zero(sum);
+  }
+
+  // Holds how inverse depth changes with the pixel on a plane, 1/m.
+  struct AffineDepth {
+    double per_u = 0, per_v = 0;
+  };
+  // Bounds what is left of inverse depth without that, 1/m.
+  struct AffineRange {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+  };
+  // Returns that of the plane at the pixel in the middle, or none where its normal tells little.
+  VPM_HD AffineDepth plane_of_middle(const PixelRectangle& p) const {
+    const std::int32_t u = (p.u0 + p.u1) / 2, v = (p.v0 + p.v1) / 2;
+    const Vec3 n = widen(normals[v * width + u]);
+    const double inverse = inverse_depth(u, v);
+    const Vec3 ray{quotient(u - k.cx, k.fx), quotient(v - k.cy, k.fy), 1};
+    const double along = -dot(n, ray);
+    if (!(along > kGrazingPlane)) return {};
+    const double per_height = -quotient(inverse, along);
+    return {quotient(n.x * per_height, k.fx), quotient(n.y * per_height, k.fy)};
+  }
+  // Bounds inverse depth over a ball's pixels, and between them, without its part that is affine.
+  VPM_HD AffineRange range_off(const AffineDepth& plane, const BallClass& in_ball) const {
+    const PixelRectangle& p = in_ball.pixels;
+    const std::int32_t wide = p.u1 - p.u0, tall = p.v1 - p.v0;
+    const int least = exponent_of(static_cast<std::uint32_t>(wide > tall ? wide : tall)) - 2;
+    const int level = least < 0 ? 0 : least < levels ? least : levels - 1;
+    const std::int32_t row = tiles_per_row(level), u_end = p.u1 >> level, v_end = p.v1 >> level;
+    const double size = std::int32_t{1} << level, middle = 0.5 * (size - 1);
+    AffineRange off;
+    for (std::int32_t v = p.v0 >> level; v <= v_end; ++v) {
+      const double of_row = plane.per_v * (v * size + middle);
+      for (std::int32_t u = p.u0 >> level; u <= u_end; ++u) {
+        const InverseDepthRange tile = tiles[level][v * row + u];
+        const double affine = of_row + plane.per_u * (u * size + middle);
+        const double low = tile.low - affine, high = tile.high - affine;
+        off.low = low < off.low ? low : off.low;
+        off.high = high > off.high ? high : off.high;
+      }
+    }
+    // Within a tile, and up to half a pixel where the nearest pixel counts alone.
+    const double slack = (middle + 0.5) * (std::fabs(plane.per_u) + std::fabs(plane.per_v));
+    return {off.low - slack, off.high + slack};
   }
 
   // Returns the exponent of the greatest power of two that is not above a number; 0 for 0.

@@ -67,10 +67,8 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images)
                 "there are " + std::to_string(images_.size()) + " depth images, but " +
                     std::to_string(kMost) + " cameras at most are one body",
                 {}, "leave out those that show least");
-  silhouettes_.resize(images_.size());
   parallel_for(images_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      silhouettes_[i] = ImageSilhouettes(images_[i].surface());
+    for (std::size_t i = begin; i < end; ++i) images_[i].silhouettes();
   });
   place_cameras();
   agreement_ = agreement_of(cameras_);
@@ -79,7 +77,8 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images)
 void PreparedRig::place_cameras() {
   for (std::size_t i = 0; i < images_.size(); ++i) {
     const Pose to_rig = relative_to(to_world(), images_[i].to_world());
-    cameras_.push_back({images_[i].surface(), silhouettes_[i].view(), inverse(to_rig), to_rig});
+    cameras_.push_back(
+        {images_[i].surface(), images_[i].silhouettes().view(), inverse(to_rig), to_rig});
   }
 }
 

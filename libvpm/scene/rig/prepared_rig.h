@@ -20,15 +20,15 @@ std::vector<DepthBody> different_images(std::vector<DepthBody> images);
 class PreparedRig {
  public:
   // Takes images in any order; one that is given twice counts once. Takes a core 30 ms for four
-  // images of 300 000 pixels. Throws what PreparedImage throws, and Error(invalid_argument)
-  // for none or more than RigSurface::kMostCameras.
+  // images of 300 000 pixels, of which those that were part of another rig take little. Throws what
+  // PreparedImage throws, and Error(invalid_argument) for none or more than
+  // RigSurface::kMostCameras.
   explicit PreparedRig(std::vector<DepthBody> images);
 
   // Returns a number shared by copies of the rig only.
   std::uint64_t serial() const { return serial_; }
   // Returns the images in the order in which the rig names them.
   const std::vector<DepthBody>& images() const { return images_; }
-  const std::vector<ImageSilhouettes>& silhouettes() const { return silhouettes_; }
   const RigAgreement& agreement() const { return agreement_; }
 
   // Maps the rig's frame, which is that of the first camera, to the world's.
@@ -70,7 +70,6 @@ class PreparedRig {
 
   std::uint64_t serial_ = next_serial();
   std::vector<DepthBody> images_;
-  std::vector<ImageSilhouettes> silhouettes_;
   std::vector<RigCamera> cameras_;
   RigAgreement agreement_;
   std::unique_ptr<Points> points_ = std::make_unique<Points>();

@@ -29,12 +29,12 @@ struct RigCamera {
 // Holds what one image tells of a place, or of four.
 template <class Real>
 struct RigReading {
-  MaskOf<Real> known;      // not set by default, as all of this: many are reserved, and few used
-  Real distance;           // m, signed as in SurfaceSampleOf; 0 where not known
-  Real depth;              // m, of the place
-  Real below;              // m, by which the place is deeper than what is on its ray; 0 if aside
-  Real weight;             // 0 where not known
-  PlaceOf<Real> normal{};  // unit, into free space, the rig's frame
+  MaskOf<Real> known;    // not set by default, as all of this: many are reserved, and few used
+  Real distance;         // m, signed as in SurfaceSampleOf; 0 where not known
+  Real depth;            // m, of the place
+  Real below;            // m, by which the place is deeper than what is on its ray; 0 if aside
+  Real weight;           // 0 where not known
+  PlaceOf<Real> normal;  // unit, into free space, the rig's frame
 };
 
 // Holds plain pointers to a rig's data, for host or device.
@@ -71,35 +71,37 @@ struct RigSurface {
     CameraSet cameras = 0;
 
     VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
-      return rig->sample_near(x, cameras);
+      return rig->sample_near(x, cameras, HUGE_VAL);
     }
   };
 
   // Samples the surface, as the cameras see it that decide in a ball about x: kNoPoint are all.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t point = kNoPoint) const {
-    return sample_near(x, point & all_cameras());
+    return sample_near(x, point & all_cameras(), HUGE_VAL);
   }
   VPM_HD View around_ball(Vec3, double, std::uint32_t point) const {
     return {this, point & all_cameras()};
   }
 
   // Samples the surface as these cameras see it, which are those that decide in a ball about x; as
-  // all do where each of them has something well before x, or none knows of x.
+  // all do where each of them has something well before x, or none knows of x. Where the surface is
+  // surely further than `enough`, m, before x, only that is told: any such distance.
   template <class Place>
-  [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_near(const Place& x,
-                                                                           CameraSet some) const {
+  [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_near(
+      const Place& x, CameraSet some, const RealOf<Place>& enough) const {
     using Real = RealOf<Place>;
     MaskOf<Real> is_decided{};
-    const SurfaceSampleOf<Real> near = sample_by(x, some, is_decided);
+    const SurfaceSampleOf<Real> near = sample_by(x, some, enough, is_decided);
     if (some == all_cameras() || all(is_decided)) return near;
-    return sample_by(x, all_cameras(), is_decided);
+    return sample_by(x, all_cameras(), enough, is_decided);
   }
 
   // Samples the surface as these cameras see it. A reading from well before x counts only where
   // there is no other; `is_decided` receives where there is one.
   template <class Place>
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_by(
-      const Place& x, CameraSet some, MaskOf<RealOf<Place>>& is_decided) const {
+      const Place& x, CameraSet some, const RealOf<Place>& enough,
+      MaskOf<RealOf<Place>>& is_decided) const {
     using Real = RealOf<Place>;
     RigReading<Real> readings[kMostCameras];
     std::int32_t names[kMostCameras], found = 0;
@@ -120,10 +122,19 @@ struct RigSurface {
       readings[i].known &= negated(is_left_out);
       readings[i].weight = is_left_out ? zero : readings[i].weight;
     }
-    bound_free_distances(x, readings, names, found);
+    const Nearest<Real> nearest = nearest_of(readings, names, found);
+    if (all(negated(on_surface.known) | is_clearly_before(nearest, enough))) {
+      on_surface.distance = nearest.length;
+      return on_surface;
+    }
+    bound_free_distances(x, nearest, readings, names, found);
     on_surface.distance = zero - HUGE_VAL;
     for (std::int32_t i = 0; i < found; ++i) {
-      RigReading<Real> mean = readings[i];
+      RigReading<Real>& reading = readings[i];
+      if (!any(reading.known &
+               (reading.distance + kRounding * nearest.apart > on_surface.distance)))
+        continue;  // its mean is not the greatest
+      RigReading<Real> mean = reading;
       average(readings, names, found, i, mean);
       const MaskOf<Real> is_greater = mean.known & (mean.distance > on_surface.distance);
       on_surface.distance = is_greater ? mean.distance : on_surface.distance;
@@ -164,7 +175,7 @@ struct RigSurface {
     for (std::int32_t i = 0; i < count; ++i) {
       const DepthSurface& image = cameras[i].image;
       const Vec3 at = cameras[i].from_rig * center;
-      const DepthSurface::BallClass own = image.classify_ball(at, radius);
+      const DepthSurface::BallClass own = class_of(image, at, radius);
       const Sight of_camera = DepthSurface::sight_of(own);
       if (of_camera == Sight::out_of_view) continue;
       if (own.side == Side::free && of_camera == Sight::seen && is_seen_free(image, at, in_ball))
@@ -176,7 +187,7 @@ struct RigSurface {
       deciding |= own.side == Side::free ? 0 : bit;
       if (own.side == Side::behind) {
         behind |= bit;
-        if (is_hidden(image, at, radius)) hidden |= bit;
+        if (is_hidden(cameras[i], own, at, radius)) hidden |= bit;
         const double gap = image.largest_gap(own, at, radius) + in_ball.margin;
         in_ball.gap = gap < in_ball.gap ? gap : in_ball.gap;
       } else {
@@ -299,6 +310,7 @@ struct RigSurface {
   static constexpr double kOtherSide = 0.5;     // cos 60 degrees
   static constexpr double kLeastCosine = 0.02;  // of incidence, for a reading's weight
   static constexpr double kSilhouetteWeight = 0.1;
+  static constexpr double kRounding = 1 + 1e-9;         // far above what sums err by
   static constexpr double kUnlike = 0.5;                // cosines of normals of two surfaces,
   static constexpr double kAlike = 0.8660254037844387;  // and of one
   // A silhouette's direction is not taken where it has less than this part of the offset.
@@ -368,20 +380,27 @@ struct RigSurface {
     return true;
   }
 
+  // Returns the class of a ball before one camera, decided by the plane at its middle too: samples
+  // of a rig take many times as long.
+  static VPM_HD DepthSurface::BallClass class_of(const DepthSurface& image, Vec3 at,
+                                                 double radius) {
+    DepthSurface::BallClass own = image.classify_ball(at, radius);
+    own.side = image.side_by_plane(own, at, radius);
+    return own;
+  }
   // True if a camera has seen all of a larger ball free, so that no mean of readings in the ball is
   // behind the surface.
   static VPM_HD bool is_seen_free(const DepthSurface& image, Vec3 at, const BallClass& in_ball) {
-    const DepthSurface::BallClass wider = image.classify_ball(at, in_ball.radius + in_ball.margin);
+    const DepthSurface::BallClass wider = class_of(image, at, in_ball.radius + in_ball.margin);
     return wider.side == Side::free && DepthSurface::sight_of(wider) == Sight::seen;
   }
-  // True if a camera has something well before all of a ball, and no silhouette beside it.
-  VPM_HD bool is_hidden(const DepthSurface& image, Vec3 at, double radius) const {
-    constexpr double kReach = kSilhouetteReach + 5;  // pixels: holes beside a silhouette are filled
-    const double least = image.k.fx < image.k.fy ? image.k.fx : image.k.fy;
-    const double aside = kReach * quotient(at.z, least);
-    const double before = well_before * (at.z + radius);
-    const double wider = radius + (before > aside ? before : aside);
-    return image.classify_ball(at, wider).side == Side::behind;
+  // True if a camera that has all of a ball behind what it sees has that well before each place in
+  // it, and no silhouette beside.
+  VPM_HD bool is_hidden(const RigCamera& camera, const DepthSurface::BallClass& own, Vec3 at,
+                        double radius) const {
+    const double nearest = at.z - radius, farthest = at.z + radius;
+    return nearest - quotient(1, own.range.low) > kRounding * well_before * farthest &&
+           !camera.silhouettes.may_be_near(own.pixels);
   }
   static VPM_HD BallClass free_ball(BallClass in_ball, Sight sight) {
     in_ball.side = Side::free;
@@ -414,45 +433,77 @@ struct RigSurface {
     return reading.below > well_before * reading.depth;
   }
 
+  // Describes the surface that is nearest to a place, of those that cameras show.
+  template <class Real>
+  struct Nearest {
+    Real length, distance;   // m; the first is not negative
+    Real half_pixel;         // m, of its camera
+    Real apart;              // m; readings further apart are of two surfaces
+    MaskOf<Real> is_free{};  // where a camera has the place before its surface
+    PlaceOf<Real> normal;
+  };
+  template <class Real>
+  [[gnu::always_inline]] VPM_HD Nearest<Real> nearest_of(const RigReading<Real>* readings,
+                                                         const std::int32_t* names,
+                                                         std::int32_t found) const {
+    const Real zero{};
+    Nearest<Real> nearest{zero + HUGE_VAL, zero, zero, zero, {}, {zero, zero, zero}};
+    Real depth = zero;
+    for (std::int32_t k = 0; k < found; ++k) {
+      const RigReading<Real>& reading = readings[k];
+      const Real length = absolute(reading.distance);
+      const MaskOf<Real> is_nearer = reading.known & (length < nearest.length);
+      nearest.length = is_nearer ? length : nearest.length;
+      nearest.distance = is_nearer ? reading.distance : nearest.distance;
+      nearest.half_pixel = is_nearer ? half_pixel(reading, names[k]) : nearest.half_pixel;
+      nearest.normal = choose(is_nearer, reading.normal, nearest.normal);
+      nearest.is_free |= reading.known & (reading.distance > 0);
+      depth = reading.known & (reading.depth > depth) ? reading.depth : depth;
+    }
+    nearest.apart = most_agreement * depth;
+    return nearest;
+  }
+  // Returns half the width of a camera's pixel at the depth of a reading, m.
+  template <class Real>
+  [[gnu::always_inline]] VPM_HD Real half_pixel(const RigReading<Real>& reading,
+                                                std::int32_t name) const {
+    return 0.5 * agreement[name * count + name] * reading.depth;
+  }
+  // True where the greatest mean is surely more than `enough`: a camera has the place before its
+  // surface, and no surface is so near that its reading, bound or not, is averaged with one behind.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD MaskOf<Real> is_clearly_before(const Nearest<Real>& nearest,
+                                                                      const Real& enough) {
+    return nearest.is_free & (nearest.length > kRounding * enough) &
+           (2 * nearest.length > kRounding * nearest.apart);
+  }
+
   // Bounds how far a place is from what each camera has not seen free: no further than the nearest
   // surface that another camera shows, but for half a pixel of that, unless this one sees free
   // space there too. Without this a camera that looks along a face would tell the distance to what
   // is beyond the face, and that be the greatest.
   template <class Place>
   [[gnu::always_inline]] VPM_HD void bound_free_distances(const Place& x,
+                                                          const Nearest<RealOf<Place>>& nearest,
                                                           RigReading<RealOf<Place>>* readings,
                                                           const std::int32_t* names,
                                                           std::int32_t found) const {
     using Real = RealOf<Place>;
     using Mask = MaskOf<Real>;
-    const Real zero{};
-    const auto half_pixel = [&](std::int32_t k) __attribute__((always_inline)) {
-      return 0.5 * agreement[names[k] * count + names[k]] * readings[k].depth;
-    };
-    Real least = zero + HUGE_VAL, distance = zero, off = zero;
-    Place normal{zero, zero, zero};
-    for (std::int32_t j = 0; j < found; ++j) {
-      const Real& other = readings[j].distance;
-      const Real length = other < 0 ? -other : other;
-      const Mask is_nearer = readings[j].known & (length < least);
-      least = is_nearer ? length : least;
-      distance = is_nearer ? other : distance;
-      off = is_nearer ? half_pixel(j) : off;
-      normal = choose(is_nearer, readings[j].normal, normal);
-    }
     for (std::int32_t i = 0; i < found; ++i) {
       RigReading<Real>& reading = readings[i];
-      const Mask is_further = reading.known & (reading.distance > least + off);
+      const Mask is_further =
+          reading.known & (reading.distance > nearest.length + nearest.half_pixel);
       if (!any(is_further)) continue;
       // Half a pixel below the surface, since a camera may see past its border by as much.
-      const Real below = distance + half_pixel(i);
+      const Real below = nearest.distance + half_pixel(reading, names[i]);
       const RigCamera& camera = cameras[names[i]];
-      const Place at = camera.from_rig * (x - below * normal);
+      const Place at = camera.from_rig * (x - below * nearest.normal);
       const SurfaceSampleOf<Real> seen =
           camera.image.sample_and(at, [](const IntOf<Real>&, const IntOf<Real>&) {});
       const Mask is_bound = is_further & negated(seen.known & (seen.foot.z > at.z));
-      reading.distance = is_bound ? least : reading.distance;
-      reading.normal = choose(is_bound, normal, reading.normal);
+      reading.distance = is_bound ? nearest.length : reading.distance;
+      reading.normal = choose(is_bound, nearest.normal, reading.normal);
       reading.weight = is_bound ? kSilhouetteWeight * reading.weight : reading.weight;
     }
   }
@@ -481,9 +532,10 @@ struct RigSurface {
     for (std::int32_t j = 0; j < found; ++j) {
       if (j == own) continue;
       const Real depth = readings[j].depth > mean.depth ? readings[j].depth : mean.depth;
-      const Real alike = likeness(readings[j].distance - mean.distance,
-                                  agreement[names[own] * count + names[j]] * depth,
-                                  dot(readings[j].normal, mean.normal));
+      const Real apart = readings[j].distance - mean.distance,
+                 most = agreement[names[own] * count + names[j]] * depth;
+      if (!any(mean.known & (absolute(apart) < most))) continue;
+      const Real alike = likeness(apart, most, dot(readings[j].normal, mean.normal));
       const Real counts = alike * readings[j].weight;
       const MaskOf<Real> is_one = mean.known & (counts > 0);
       if (!any(is_one)) continue;

@@ -238,27 +238,52 @@ ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) {
   for_bands(image.height, [&](int begin, int end) {
     of_bands[static_cast<std::size_t>(begin / kRowsPerBand)] = find_pixels(image, all, begin, end);
   });
-  std::vector<std::uint32_t> numbers(all.values.size(), 0);
-  for (const std::vector<SilhouettePixel>& band : of_bands) {
-    for (const SilhouettePixel& pixel : band) {
-      pixels_.push_back(pixel);
-      numbers[all.index(static_cast<int>(pixel.u), static_cast<int>(pixel.v))] =
-          static_cast<std::uint32_t>(pixels_.size());
-    }
-  }
+  for (const std::vector<SilhouettePixel>& band : of_bands)
+    pixels_.insert(pixels_.end(), band.begin(), band.end());
   nearest_.assign(all.values.size(), 0);
-  if (pixels_.empty()) return;
+  if (!pixels_.empty()) find_nearest(image);
+  sum_tiles(image.width, image.height);
+}
+
+void ImageSilhouettes::find_nearest(const DepthSampler& image) {
+  const auto columns = static_cast<std::size_t>(image.width);
+  std::vector<std::uint32_t> numbers(nearest_.size(), 0);
+  for (std::size_t k = 0; k < pixels_.size(); ++k) {
+    const auto u = static_cast<std::size_t>(pixels_[k].u),
+               v = static_cast<std::size_t>(pixels_[k].v);
+    numbers[v * columns + u] = static_cast<std::uint32_t>(k + 1);
+  }
   const std::vector<int> rows = nearest_rows(numbers, image.width, image.height);
   for_bands(image.height, [&](int begin, int end) {
     NearestInRow nearest(image.width, image.k.fx / image.k.fy);
     for (int v = begin; v < end; ++v) {
-      const std::size_t first = all.index(0, v);
+      const std::size_t first = static_cast<std::size_t>(v) * columns;
       nearest.run(rows.data() + first, v, [&](int u, int column) {
-        const int row = rows[first + static_cast<std::size_t>(column)];
-        nearest_[first + static_cast<std::size_t>(u)] = numbers[all.index(column, row)];
+        const auto at = static_cast<std::size_t>(column);
+        nearest_[first + static_cast<std::size_t>(u)] =
+            numbers[static_cast<std::size_t>(rows[first + at]) * columns + at];
       });
     }
   });
+}
+
+void ImageSilhouettes::sum_tiles(int width, int height) {
+  const auto tiles = [](int pixels) {
+    return static_cast<std::size_t>((pixels - 1) >> Silhouettes::kTileShift) + 1;
+  };
+  const std::size_t columns = tiles(width) + 1, rows = tiles(height) + 1;
+  columns_ = static_cast<std::int32_t>(columns);
+  sums_.assign(columns * rows, 0);
+  std::size_t pixel = 0;
+  for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
+    std::uint32_t* const row = sums_.data() + ((v >> Silhouettes::kTileShift) + 1) * columns + 1;
+    for (std::size_t u = 0; u < static_cast<std::size_t>(width); ++u)
+      row[u >> Silhouettes::kTileShift] |= nearest_[pixel++] != 0 ? 1U : 0U;
+  }
+  for (std::size_t at = columns + 1; at < sums_.size(); ++at) {
+    if (at % columns == 0) continue;
+    sums_[at] += sums_[at - 1] + sums_[at - columns] - sums_[at - columns - 1];
+  }
 }
 
 }  // namespace vpm

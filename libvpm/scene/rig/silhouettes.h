@@ -22,10 +22,24 @@ struct SilhouettePixel {
 
 // Holds plain pointers to the silhouettes of an image, for host or device.
 struct Silhouettes {
+  static constexpr int kTileShift = 3;  // tiles of 8 by 8 pixels
+
   const SilhouettePixel* pixels = nullptr;
   // For each pixel of the image one more than the index of the nearest silhouette pixel; 0 where
   // none is within kSilhouetteReach.
   const std::uint32_t* nearest = nullptr;
+  // Summed-area table of tiles: at (u, v), u the faster, the number of tiles left of u and above v
+  // that have a pixel with a nearest silhouette.
+  const std::uint32_t* sums = nullptr;
+  std::int32_t columns = 0;  // of the table
+
+  // False if no pixel of a rectangle has a nearest silhouette.
+  VPM_HD bool may_be_near(const PixelRectangle& p) const {
+    const std::int32_t u0 = p.u0 >> kTileShift, u1 = (p.u1 >> kTileShift) + 1;
+    const std::int32_t above = (p.v0 >> kTileShift) * columns,
+                       below = ((p.v1 >> kTileShift) + 1) * columns;
+    return sums[below + u1] + sums[above + u0] != sums[below + u0] + sums[above + u1];
+  }
 };
 
 // Greatest distance, in widths of a pixel and in rows, at which a silhouette is read.
@@ -38,13 +52,19 @@ class ImageSilhouettes {
   // beyond it; what was removed tells nothing of what is there.
   explicit ImageSilhouettes(const DepthSampler& image);
 
-  Silhouettes view() const { return {pixels_.data(), nearest_.data()}; }
+  Silhouettes view() const { return {pixels_.data(), nearest_.data(), sums_.data(), columns_}; }
   const std::vector<SilhouettePixel>& pixels() const { return pixels_; }
   const std::vector<std::uint32_t>& nearest() const { return nearest_; }
+  const std::vector<std::uint32_t>& sums() const { return sums_; }
 
  private:
+  void find_nearest(const DepthSampler& image);
+  void sum_tiles(int width, int height);
+
   std::vector<SilhouettePixel> pixels_;
   std::vector<std::uint32_t> nearest_;
+  std::vector<std::uint32_t> sums_;
+  std::int32_t columns_ = 0;
 };
 
 }  // namespace vpm
