@@ -38,41 +38,57 @@ ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options
   }
   ImportOptions of_frame = options;
   if (frame.camera) of_frame.to_world = frame.camera;
+  if (frame.intrinsics) of_frame.intrinsics = frame.intrinsics;
   of_frame.time = frame.time;
   return import_scan(bytes_of(frame), frame.path, of_frame);
 }
 
-void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
+AnyBody FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
   const ImportedScan scan = read_frame(frame, options_);
-  if (is_ready_cloud(frame)) {  // with the normals that it has
-    result.body = AnyBody(scan.points, points_);
-    if (scan.image) result.camera = scan.image->camera;
-    return;
-  }
-  result.body = body_of(scan, frame.path);
-  result.remarks = scan.remarks;
-  if (scan.image) result.camera = scan.image->camera;
+  if (!scan.image && recording_.sources > 1)
+    throw Error(ErrorKind::invalid_argument,
+                "several recordings are one body by their cameras, but this frame keeps none",
+                frame.path, "replay it alone, or make its cloud of the depth image");
+  const AnyBody body = is_ready_cloud(frame) ? AnyBody(scan.points, points_)  // with its normals
+                                             : body_of(scan, frame.path, sources_[frame.source]);
+  result.remarks.insert(result.remarks.end(), scan.remarks.begin(), scan.remarks.end());
+  if (scan.image && result.used == 0) result.camera = scan.image->camera;
+  return body;
 }
 
-AnyBody FrameReader::body_of(const ImportedScan& scan, const std::string& name) {
+AnyBody FrameReader::body_of(const ImportedScan& scan, const std::string& name, Source& source) {
   if (!scan.image) return AnyBody(PointsBody(scan.points, points_));
   const auto& [camera, depth] = *scan.image;
-  if (!frames_ || !same_image_size_and_rays(camera, camera_)) {
-    frames_.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height, std::nullopt,
-                                      options_.normals, device_, points_});
-    camera_ = camera;
+  if (!source.images || !same_image_size_and_rays(camera, source.camera)) {
+    source.images.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height,
+                                            std::nullopt, options_.normals, device_, points_});
+    source.camera = camera;
   }
-  std::copy(depth.depth.begin(), depth.depth.end(), frames_->metres().begin());
-  const DepthBody body = frames_->prepare(camera.to_world);
+  std::copy(depth.depth.begin(), depth.depth.end(), source.images->metres().begin());
+  const DepthBody body = source.images->prepare(camera.to_world);
   if (body.points() == 0) throw nothing_with_normal(scan, name);
   return body;
+}
+
+// Sets what all sources show now.
+void FrameReader::take_bodies(PreparedChange& result) const {
+  std::vector<DepthBody> images;
+  for (const Source& source : sources_) {
+    if (!source.body) continue;
+    result.frames.push_back(source.frame);
+    result.body = source.body;
+    if (recording_.sources > 1) images.push_back(*source.body->as<DepthBody>());
+  }
+  if (images.size() > 1) result.body = body_of_cameras(std::move(images));
 }
 
 PreparedChange FrameReader::prepare(FrameChange change) {
   const auto start = std::chrono::steady_clock::now();
   PreparedChange result;
-  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.body; ++at) {
+  std::vector<bool> has_newer(sources_.size());
+  for (auto at = change.frames.rbegin(); at != change.frames.rend(); ++at) {
     const RecordedFrame& frame = recording_.frames[*at];
+    if (has_newer[frame.source]) continue;
     const auto fails = [&](FrameFault fault, const std::string& message) {
       result.unusable.push_back({*at, fault, message});
     };
@@ -81,8 +97,11 @@ PreparedChange FrameReader::prepare(FrameChange change) {
       continue;
     }
     try {
-      read(frame, result);
-      result.frame = *at;
+      Source& source = sources_[frame.source];
+      source.body = read(frame, result);
+      source.frame = *at;
+      has_newer[frame.source] = true;
+      if (result.used++ == 0) result.frame = *at;
     } catch (const NothingMeasured& fault) {
       fails(FrameFault::empty, fault.what());
     } catch (const Error& fault) {
@@ -91,6 +110,7 @@ PreparedChange FrameReader::prepare(FrameChange change) {
       fails(FrameFault::broken, fault.what());
     }
   }
+  if (result.used > 0) take_bodies(result);
   result.change = std::move(change);
   result.seconds = seconds_since(start);
   return result;
@@ -158,8 +178,8 @@ PreparedChange FrameFeed::take() {
 }
 
 void FrameFeed::count(const PreparedChange& taken) {
-  counts_.used += taken.body.has_value();
-  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - taken.body.has_value();
+  counts_.used += taken.used;
+  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - taken.used;
   counts_.late += taken.change.is_late;
   for (const UnusableFrame& frame : taken.unusable) {
     counts_.lost += frame.fault == FrameFault::lost;
@@ -176,6 +196,7 @@ const PreparedChange* FrameFeed::advance_to(std::size_t step) {
   count(taken_);
   if (taken_.body) {
     body_ = *std::exchange(taken_.body, std::nullopt);
+    frames_ = taken_.frames;
     frame_ = taken_.frame;
   }
   return &taken_;

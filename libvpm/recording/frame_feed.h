@@ -28,12 +28,15 @@ struct UnusableFrame {
   std::string message;
 };
 
-// Prepared result of all frames that come at one step: the newest usable one.
+// Prepared result of all frames that come at one step: the newest usable one. Of several cameras
+// each keeps its last one until it has another.
 struct PreparedChange {
   FrameChange change;
-  std::optional<AnyBody> body;   // empty if no frame is usable: the loop keeps the last one
-  std::size_t frame = 0;         // index in the recording, if there is a frame
-  std::optional<Camera> camera;  // camera of the frame, if it is an image
+  std::optional<AnyBody> body;        // empty if no frame is usable: the loop keeps the last one
+  std::vector<std::size_t> frames{};  // of the body: indices in the recording, by their sources
+  std::size_t used = 0;               // frames of the change that the body has
+  std::size_t frame = 0;              // index of the newest of them, if there is one
+  std::optional<Camera> camera;       // camera of that, if it is an image
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // time from the file to the prepared frame
   Remarks remarks;     // remarks of the reader about the frame
@@ -43,27 +46,41 @@ struct PreparedChange {
 // camera's pose comes from the recording where it has one. Throws as import_scan and parse_cloud.
 ImportedScan read_frame(const RecordedFrame& frame, const ImportOptions& options);
 
-// Reads and prepares frames on the calling thread. Keeps a reference to the recording.
+// Reads and prepares frames on the calling thread. Keeps a reference to the recording. Depth images
+// of several sources become one body (scene/rig); throws Error(invalid_argument) if one keeps no
+// camera.
 class FrameReader {
  public:
   // `options` tell how images become clouds, `device` where they are prepared. Camera poses come
   // from the recording.
   FrameReader(const Recording& recording, const ImportOptions& options, const Device& device = {},
               Denoising points = Denoising::on)
-      : recording_(recording), options_(options), device_(device), points_(points) {}
+      : recording_(recording),
+        options_(options),
+        device_(device),
+        points_(points),
+        sources_(recording.sources) {}
 
   PreparedChange prepare(FrameChange change);
 
  private:
-  void read(const RecordedFrame& frame, PreparedChange& result);
-  AnyBody body_of(const ImportedScan& scan, const std::string& name);
+  // Holds what a source shows now, and the memory of its images.
+  struct Source {
+    std::optional<DepthFrames> images;
+    Camera camera;  // of these
+    std::optional<AnyBody> body;
+    std::size_t frame = 0;
+  };
+
+  AnyBody read(const RecordedFrame& frame, PreparedChange& result);
+  AnyBody body_of(const ImportedScan& scan, const std::string& name, Source& source);
+  void take_bodies(PreparedChange& result) const;
 
   const Recording& recording_;
   ImportOptions options_;
   Device device_;
   Denoising points_;
-  std::optional<DepthFrames> frames_;
-  Camera camera_;  // camera of frames_
+  std::vector<Source> sources_;
 };
 
 // Statistics of the frames of a loop.
@@ -94,8 +111,11 @@ class FrameFeed {
   // into the feed, where body() returns it until the next change.
   const PreparedChange* advance_to(std::size_t step);
 
-  // Returns the current frame; one of points before the first usable frame.
+  // Returns the body of the current frames, one for each source that had any; one of points before
+  // the first usable frame.
   const AnyBody& body() const { return body_; }
+  const std::vector<std::size_t>& frames() const { return frames_; }
+  // Returns the newest of them.
   std::optional<std::size_t> frame() const { return frame_; }
   const FrameCounts& counts() const { return counts_; }
 
@@ -112,6 +132,7 @@ class FrameFeed {
   FrameSchedule schedule_;  // schedule of the loop; the thread has a copy
   std::optional<FrameChange> next_;
   AnyBody body_{Cloud{}};
+  std::vector<std::size_t> frames_;
   std::optional<std::size_t> frame_;
   PreparedChange taken_;
   FrameCounts counts_;

@@ -15,17 +15,16 @@ constexpr double kRounding = 1e-3;
 
 }  // namespace
 
-double median_interval(const std::vector<RecordedFrame>& frames) {
+double median_interval(const std::vector<RecordedFrame>& frames, std::size_t source) {
   std::vector<double> times;
-  for (const RecordedFrame& frame : frames) times.push_back(frame.time);
+  for (const RecordedFrame& frame : frames)
+    if (frame.source == source) times.push_back(frame.time);
   return median_interval(times);
 }
 
 FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& options)
-    : recording_(recording),
-      options_(options),
-      usual_interval_(median_interval(recording.frames)),
-      is_over_(recording.frames.empty()) {
+    : recording_(recording), options_(options), is_over_(recording.frames.empty()) {
+  find_gaps();
   if (is_over_) return;
   const double lasts = recording.frames.back().time - recording.frames.front().time;
   if (options.repeat && !(lasts * options.rate >= 1))
@@ -36,6 +35,19 @@ FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& 
   // Skips whole rounds that end before the first step.
   const double round = 2 * lasts, before = options.start - options.latency - time_;
   if (before > 2 * round) time_ = turn_time_ += round * (std::floor(before / round) - 1);
+}
+
+void FrameSchedule::find_gaps() {
+  const std::vector<RecordedFrame>& frames = recording_.frames;
+  gaps_.resize(frames.size());
+  std::vector<std::optional<std::size_t>> last(recording_.sources);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    std::optional<std::size_t>& before = last[frames[k].source];
+    if (before) gaps_[*before].after = gaps_[k].before = frames[k].time - frames[*before].time;
+    before = k;
+  }
+  for (std::size_t source = 0; source < recording_.sources; ++source)
+    usual_intervals_.push_back(median_interval(frames, source));
 }
 
 double FrameSchedule::step_of_next() const {
@@ -56,9 +68,9 @@ void FrameSchedule::advance() {
     turn_time_ = time_;
   }
   const std::size_t next = backwards_ ? frame_ - 1 : frame_ + 1;
-  const double interval = std::abs(frames[next].time - frames[frame_].time);
+  const double interval = backwards_ ? gaps_[next].after : gaps_[next].before;
   time_ = turn_time_ + std::abs(frames[next].time - frames[turn_].time);
-  is_late_ = recording_.has_clock && interval > kLateAfter * usual_interval_;
+  is_late_ = recording_.has_clock && interval > kLateAfter * usual_intervals_[frames[next].source];
   frame_ = next;
 }
 

@@ -8,8 +8,9 @@
 
 namespace vpm {
 
-// Returns the median of the times from one frame to the next, s; infinity for less than two frames.
-double median_interval(const std::vector<RecordedFrame>& frames);
+// Returns the median of the times from one frame of a source to its next, s; infinity for less than
+// two frames.
+double median_interval(const std::vector<RecordedFrame>& frames, std::size_t source = 0);
 
 struct ScheduleOptions {
   double rate = 1000;     // steps per second
@@ -30,8 +31,8 @@ struct FrameChange {
 // Returns the changes of a loop one after the other.
 class FrameSchedule {
  public:
-  // A frame is late if it comes more than this many median intervals after the one before. Numbered
-  // frames are never late, only missing.
+  // A frame is late if it comes more than this many median intervals of its source after the one
+  // before of that. Numbered frames are never late, only missing.
   static constexpr double kLateAfter = 1.5;
 
   // Keeps a reference to `recording`. Throws Error(refused) if frames are to be repeated that all
@@ -42,15 +43,22 @@ class FrameSchedule {
   std::optional<FrameChange> next();
 
  private:
+  // Holds the time from a frame to those of its source before and after it, s; 0 without one.
+  struct Gaps {
+    double before = 0, after = 0;
+  };
+
+  void find_gaps();
   double step_of_next() const;
   void advance();
 
   const Recording& recording_;
   ScheduleOptions options_;
-  double usual_interval_ = 0;
-  double time_ = 0;        // time of the next frame
-  std::size_t frame_ = 0;  // index of the next frame
-  std::size_t turn_ = 0;   // frame at which the direction last changed
+  std::vector<double> usual_intervals_;  // of the sources
+  std::vector<Gaps> gaps_;               // of the frames
+  double time_ = 0;                      // time of the next frame
+  std::size_t frame_ = 0;                // index of the next frame
+  std::size_t turn_ = 0;                 // frame at which the direction last changed
   double turn_time_ = 0;
   bool backwards_ = false;
   bool is_over_ = false;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/sniff.h"
@@ -349,6 +351,10 @@ void read_intrinsics(const fs::path& path, Recording& recording) {
   recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string());
 }
 
+bool is_earlier(const RecordedFrame& a, const RecordedFrame& b) {
+  return a.time < b.time;
+}
+
 }  // namespace
 
 bool is_ready_cloud(const RecordedFrame& frame) {
@@ -369,6 +375,22 @@ std::string stem_of(const RecordedFrame& frame) {
   return frame.read ? path.filename().string() : path.stem().string();
 }
 
+Recording joined(std::vector<Recording> recordings) {
+  Recording all = std::move(recordings.front());
+  for (std::size_t k = 1; k < recordings.size(); ++k) {
+    Recording& next = recordings[k];
+    if (next.has_clock != all.has_clock)
+      refuse("the frames of one camera have times, and those of another numbers",
+             next.frames.front().path, "give a list of \"time file\" lines for each of them");
+    for (RecordedFrame& frame : next.frames) frame.source = k;
+    std::move(next.frames.begin(), next.frames.end(), std::back_inserter(all.frames));
+    all.missing += next.missing;
+  }
+  all.sources = recordings.size();
+  std::stable_sort(all.frames.begin(), all.frames.end(), is_earlier);
+  return all;
+}
+
 Recording read_recording(const std::string& path, const RecordingOptions& options) {
   const bool is_folder = fs::is_directory(status_of(path));
   const fs::path folder = is_folder ? fs::path(path) : fs::path(path).parent_path();
@@ -380,8 +402,7 @@ Recording read_recording(const std::string& path, const RecordingOptions& option
   } else {
     read_list(path, recording);
   }
-  std::stable_sort(recording.frames.begin(), recording.frames.end(),
-                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  std::stable_sort(recording.frames.begin(), recording.frames.end(), is_earlier);
   const bool is_mcap = static_cast<bool>(recording.frames.front().read);
   if (!is_mcap && !options.topic.empty())
     throw Error(ErrorKind::invalid_argument, "`topic` is for recordings in MCAP: leave it out",

@@ -32,6 +32,10 @@ struct RecordedFrame {
   // True if the recording has camera poses, but none for this frame.
   bool is_lost = false;
   std::function<std::vector<std::byte>()> read = {};  // of MCAP: returns the image as a file
+  // Of several cameras that are replayed together (joined), the one that took the frame, and its
+  // intrinsics if they are known.
+  std::size_t source = 0;
+  std::optional<Intrinsics> intrinsics{};
 };
 
 // Returns the bytes of the frame's file. Thread-safe. Throws Error(refused) if they cannot be read.
@@ -56,7 +60,12 @@ struct Recording {
   std::size_t camera_undefined = 0, camera_doubled = 0;
   std::optional<PoseGap> camera_gap;  // improbable time without a camera pose, if frames lie in it
   double largest_deviation = 0;       // largest of the camera rotations, before normalisation
+  std::size_t sources = 1;            // cameras that took the frames
 };
+
+// Returns the recordings of several cameras, on one clock, as one. Its frames name their source, by
+// its number in the list. Throws Error(refused) if some have a clock and others numbers.
+Recording joined(std::vector<Recording> recordings);
 
 // True if the frame is a .vpmc file, which holds its camera and that camera's pose.
 bool is_ready_cloud(const RecordedFrame& frame);

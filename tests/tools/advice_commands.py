@@ -460,6 +460,15 @@ COMMANDS = [
      f"{STEPS} --frames named.txt --trajectory still.txt"),
     (f"{STEPS} --frames twice --trajectory still.txt", r'give a list of "time file" lines',
      f"{STEPS} --frames twice.txt --trajectory still.txt"),
+    *[(f"{STEPS} --frames tum --frames tum --trajectory still_tum.txt {poses}", advice,
+       f"{STEPS} --frames tum --frames tum --trajectory still_tum.txt {{0}} tum/groundtruth.txt {{0}} tum/groundtruth.txt")
+      for poses, advice in (("--camera-poses tum/groundtruth.txt", "give (--camera-poses) once for each --frames, in their order, or not at all"),
+                            (f"--camera-pose {POSE}", "give (--camera-poses) for each"))],
+    (f"{STEPS} --frames tum --frames plain --trajectory still_tum.txt", r'give a list of "time file" lines for each of them',
+     f"{STEPS} --frames tum --frames tum/depth.txt --trajectory still_tum.txt"),
+    ("mkdir -p no_camera; vpm-normals points.ply -o no_camera/0.vpmc --force; vpm-query --tool small.vpmg --frames no_camera --frames no_camera "
+     "--trajectory still.txt", "replay it alone, or make its cloud of the depth image",
+     "vpm-query --tool small.vpmg --frames no_camera --trajectory still.txt"),
     (f"{STEPS} --frames plain --trajectory still.txt --camera-poses camera_two.txt", "give one for each, or times",
      f"{STEPS} --frames plain --trajectory still.txt --camera-poses camera_path.txt"),
     (f"{STEPS} --frames plain --trajectory still.txt --camera-poses camera_two.txt", "give one for each, or times",

@@ -89,7 +89,9 @@ void declare_inputs(CLI::App& app, Arguments& a) {
          "--frames", a.replay.frames,
          "Instead of --cloud: folder of depth images with their times (TUM RGB-D, 7-Scenes), "
          "or of the clouds that vpm-normals made of them, or a list of \"time file\" "
-         "lines, or a recording of ROS 2 in MCAP; goes with --poses")
+         "lines, or a recording of ROS 2 in MCAP; goes with --poses. Given several times, cameras "
+         "of one scene, on one clock")
+      ->allow_extra_args(false)
       ->option_text("FOLDER or FILE");
 }
 
@@ -219,11 +221,16 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
       ->check(number_in(1, 1e6))
       ->option_text("R");
   app.add_option("--topic", a.topic,
-                 "Topic of the depth images of a recording in MCAP, where it has several")
+                 "Topic of the depth images of a recording in MCAP, where it has several. One for "
+                 "each --frames, in their order")
+      ->allow_extra_args(false)
       ->option_text("TOPIC");
   app.add_option("--camera-poses", a.camera_poses,
                  "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
-                 "frames, groundtruth.txt, or TF of a recording");
+                 "frames, groundtruth.txt, or TF of a recording. One for each --frames, in their "
+                 "order")
+      ->allow_extra_args(false)
+      ->option_text("FILE");
   app.add_option(
          "--remove", a.remove,
          "Take known solids, such as the robot and what it holds, out of each frame: a file "
@@ -332,8 +339,9 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                 "--serve answers in JSON: let the name of --output end in .jsonl");
   KeptLines::check(a.output, leftover_of(a, common));
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  std::vector<std::string> inputs{a.pairs, a.replay.frames, a.replay.camera_poses,
-                                  a.urdf,  a.joints,        a.srdf};
+  std::vector<std::string> inputs{a.pairs, a.urdf, a.joints, a.srdf};
+  inputs.insert(inputs.end(), a.replay.frames.begin(), a.replay.frames.end());
+  inputs.insert(inputs.end(), a.replay.camera_poses.begin(), a.replay.camera_poses.end());
   inputs.insert(inputs.end(), a.clouds.begin(), a.clouds.end());
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   inputs.insert(inputs.end(), solids.begin(), solids.end());

@@ -16,7 +16,7 @@ namespace vpm::tools {
 
 // Values of the options of recorded frames.
 struct ReplayArguments {
-  std::string frames, topic, camera_poses;
+  std::vector<std::string> frames, topic, camera_poses;  // a recording, or one for each camera
   std::string remove, remove_margin;  // a file of solids, and how far they may be off
   std::optional<double> rate;         // steps per second; kRate if not given
   double frame_rate = 30;    // frames per second, for frames that have numbers but no times

@@ -20,6 +20,7 @@
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/setup/pose_check.h"
 #include "libvpm/setup/size_check.h"
+#include "tools/common/error_text.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/query/arguments.h"
 #include "tools/query/contact_lines.h"
@@ -60,8 +61,8 @@ class Replay {
            Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
            std::optional<View>& view);
 
-  // Reads a frame again, for the page.
-  PointCloud cloud_of(std::size_t frame) const;
+  // Reads the frames of a scene of the page again.
+  PointCloud cloud_of(std::size_t number) const;
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -81,7 +82,10 @@ class Replay {
   nlohmann::json report(double deadline) const;
 
  private:
+  void open_recordings();
   double start_time() const;
+  // Returns the number by which the page knows the current frames.
+  std::optional<std::size_t> number_of_scene();
   // Has frames freed of the solids of --remove, if it is given.
   void begin_removal();
   void find_first_body();
@@ -93,7 +97,8 @@ class Replay {
   // Shows the step that was asked last to the checks and the view, and writes
   // its lines.
   void tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-            Collisions& collisions, ResultOutput& output, std::optional<View>& view) const;
+            Collisions& collisions, ResultOutput& output, std::optional<View>& view);
+  // Returns the names of the current frames, one for each camera.
   std::string frame_name() const;
   // Returns step k of a tool, without rendered wrench and energy if there is no
   // coupling.
@@ -103,6 +108,7 @@ class Replay {
   const Program& program_;
   const ReplayArguments& arguments_;
   double rate_;
+  std::string folders_;  // names of the recordings
   Recording recording_;
   std::size_t tools_;
   ToolPaths paths_;
@@ -117,7 +123,8 @@ class Replay {
   std::optional<Scene> scene_;  // the frame that the loop sees
   std::unique_ptr<FrameFeed> feed_;
   std::optional<LoopClock> clock_;
-  std::vector<CoupledStep> now_;  // the step of each tool
+  std::vector<std::vector<std::size_t>> shown_;  // frames of each scene that the page may show
+  std::vector<CoupledStep> now_;                 // the step of each tool
   Pose last_pose_;
   std::vector<double> query_seconds_;
   std::optional<Camera> first_camera_;  // camera of the first frame, if it is an image
@@ -133,15 +140,40 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import,
-                                   const std::string& world) {
-  return {a.frame_rate, a.camera_poses, import.to_world, a.topic, world};
+std::string joined(const std::vector<std::string>& names, const char* between) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : between) + name;
+  return all;
+}
+
+// Adds the points of another cloud.
+void add_points(const Cloud& more, Cloud& all) {
+  if (all.positions.empty()) all.origin = more.origin;
+  for (const Vec3f& place : more.positions)
+    all.positions.push_back(narrow(widen(place) + (more.origin - all.origin)));
+  all.normals.insert(all.normals.end(), more.normals.begin(), more.normals.end());
+  all.radii.insert(all.radii.end(), more.radii.begin(), more.radii.end());
+}
+
+void check_cameras(const ReplayArguments& a) {
+  const auto check_count = [&](const char* option, std::size_t count) {
+    if (count > 0 && count != a.frames.size())
+      refuse_usage("give " + std::string(option) +
+                   " once for each --frames, in their order, or not at all");
+  };
+  check_count("--camera-poses", a.camera_poses.size());
+  check_count("--topic", a.topic.size());
+  if (a.frames.size() > 1 && !a.import.camera_pose.empty())
+    refuse_usage(
+        "--camera-pose would put the cameras of several --frames at one place: give "
+        "--camera-poses for each");
 }
 
 Replay::Replay(const QuerySetup& setup, double rate)
     : program_(setup.program),
       arguments_(setup.arguments.replay),
       rate_(rate),
+      folders_(joined(arguments_.frames, ", ")),
       tools_(setup.arguments.tools.size()),
       paths_(program_, setup.arguments.poses, rate, setup.arguments.solids.size()),
       import_(import_options(program_, arguments_.import)),
@@ -149,15 +181,29 @@ Replay::Replay(const QuerySetup& setup, double rate)
       points_(setup.points),
       solids_(setup.solids),
       tells_contacts_(setup.arguments.contacts > 0) {
-  recording_ = open_recording(program_, arguments_.frames,
-                              recording_options(arguments_, import_, paths_.world()), import_);
-  note_recording(program_, arguments_.frames, recording_, import_);
+  open_recordings();
   if (!recording_.has_clock && paths_.has_times())
     program_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
   schedule_ = {rate, paths_.steps(), start_time(), arguments_.frame_latency,
                arguments_.repeat_frames};
   begin_removal();
   find_first_body();
+}
+
+void Replay::open_recordings() {
+  check_cameras(arguments_);
+  std::vector<Recording> recordings;
+  for (const std::string& folder : arguments_.frames) {
+    const std::size_t k = recordings.size();
+    RecordingOptions options{arguments_.frame_rate, {}, import_.to_world, {}, paths_.world()};
+    if (!arguments_.camera_poses.empty()) options.camera_poses = arguments_.camera_poses[k];
+    if (!arguments_.topic.empty()) options.topic = arguments_.topic[k];
+    ImportOptions import = import_;
+    Recording& one = recordings.emplace_back(open_recording(program_, folder, options, import));
+    note_recording(program_, folder, one, import);
+    for (RecordedFrame& frame : one.frames) frame.intrinsics = import.intrinsics;
+  }
+  recording_ = vpm::joined(std::move(recordings));
 }
 
 void Replay::begin_removal() {
@@ -209,7 +255,7 @@ void Replay::find_first_body() {
     tools::say(program_, recording_.frames[prepared.frame].path, prepared.remarks);
     return;
   }
-  refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
+  refuse(folders_ + ": no frame can be used; the last one: " + why);
 }
 
 CoupledStep Replay::ask(std::size_t k, std::size_t tool, LevelQuery& query,
@@ -243,10 +289,22 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   }
 }
 
-PointCloud Replay::cloud_of(std::size_t frame) const {
-  ImportedScan scan = read_frame(recording_.frames[frame], import_);
+PointCloud Replay::cloud_of(std::size_t number) const {
+  if (recording_.sources > 1) {
+    Cloud all;
+    for (const std::size_t frame : shown_[number])
+      add_points(read_frame(recording_.frames[frame], import_).points, all);
+    return HandleAccess::make<PointCloud>(std::move(all));
+  }
+  ImportedScan scan = read_frame(recording_.frames[number], import_);
   if (scan.image) scan.points.sensor = std::move(scan.image);
   return HandleAccess::make<PointCloud>(std::move(scan.points));
+}
+
+std::optional<std::size_t> Replay::number_of_scene() {
+  if (recording_.sources == 1 || !feed_->frame()) return feed_->frame();
+  if (shown_.empty() || shown_.back() != feed_->frames()) shown_.push_back(feed_->frames());
+  return shown_.size() - 1;
 }
 
 void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoupling>& coupling) {
@@ -259,17 +317,17 @@ void Replay::ask_all(std::size_t k, LevelQuery& query, std::optional<VirtualCoup
 }
 
 void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
-                  Collisions& collisions, ResultOutput& output, std::optional<View>& view) const {
+                  Collisions& collisions, ResultOutput& output, std::optional<View>& view) {
   std::vector<Pose> solids;  // for the view alone
   if (view) {
-    view->see_frame(feed_->frame());
+    view->see_frame(number_of_scene());
     solids = paths_.solids(now_.front().step);
   }
   for (std::size_t tool = 0; tool < now_.size(); ++tool) {
     const CoupledStep& step = now_[tool];
     const auto index = static_cast<std::uint32_t>(tool);
     if (view) view->add({step.tool, index, solids}, step.contact, query);
-    if (feed_->frame() && solids_.empty())
+    if (feed_->frame() && solids_.empty() && recording_.sources == 1)
       check.see(step.tool, tool, step.contact, *feed_->frame());
     const auto told = tools_ > 1 ? std::optional(tool) : std::nullopt;
     nlohmann::ordered_json line =
@@ -285,7 +343,7 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<View>& view) {
-  if (view) view->set_frames(arguments_.frames, [this](std::size_t k) { return cloud_of(k); });
+  if (view) view->set_frames(folders_, [this](std::size_t k) { return cloud_of(k); });
   if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
@@ -310,8 +368,10 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
 }
 
 std::string Replay::frame_name() const {
-  const auto frame = feed_->frame();
-  return frame ? name_of(recording_.frames[*frame].path) : "";
+  std::vector<std::string> names;
+  for (const std::size_t frame : feed_->frames())
+    names.push_back(name_of(recording_.frames[frame].path));
+  return joined(names, ";");
 }
 
 void Replay::say(const PreparedChange& change) {
@@ -329,7 +389,7 @@ void Replay::say(const PreparedChange& change) {
 
 // Warns once of a frame of another size than the first's, where the same intrinsics are used.
 void Replay::compare_size(const PreparedChange& change) {
-  if (!change.camera || !first_camera_) return;
+  if (!change.camera || !first_camera_ || recording_.sources > 1) return;
   const Camera &own = *change.camera, &first = *first_camera_;
   const Intrinsics &k = own.intrinsics, &l = first.intrinsics;
   const bool is_same_size = own.width == first.width && own.height == first.height;
@@ -344,7 +404,7 @@ void Replay::compare_size(const PreparedChange& change) {
 void Replay::say_at_end() const {
   if (removal_) removal_->say(program_);
   if (recording_.missing > 0)
-    program_.warn(std::to_string(recording_.missing) + " frames of " + arguments_.frames +
+    program_.warn(std::to_string(recording_.missing) + " frames of " + folders_ +
                   " are missing; the loop went on with those before");
   if (steps_without_frame_ > 0)
     program_.warn(std::to_string(steps_without_frame_) +

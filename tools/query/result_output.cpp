@@ -115,7 +115,7 @@ nlohmann::json run_of(const Program& program, const Arguments& a,
   for (const std::string& cloud : a.clouds) add("cloud", cloud);
   if (a.clouds.empty()) add("cloud", {});
   for (const std::string& poses : a.poses) add("poses", poses);
-  add("camera-poses", a.replay.camera_poses);
+  for (const std::string& poses : a.replay.camera_poses) add("camera-poses", poses);
   add("remove", a.replay.remove);
   for (const auto& [option, name] :
        {std::pair{"urdf", a.urdf}, {"joints", a.joints}, {"srdf", a.srdf}})

@@ -28,6 +28,13 @@ $ bash record.sh tf.mcap 3 tf=base:link; vpm-query --tool cube.vpmg --frames tf.
 [0.25, 0.3, 0.35]
 2> vpm-query: warning: 30 steps came before the first frame that can be used: nothing is in their way
 
+# Two cameras of one recording are one scene; a camera that is given twice is that camera.
+$ t=/camera/depth/image_rect_raw; bash record.sh rec.mcap 3; vpm-query --tool cube.vpmg --frames rec.mcap --frames rec.mcap --topic $t --topic $t --poses still.txt --quiet | python3 fractions.py
+[0.25, 0.3, 0.35]
+$ vpm-query --tool cube.vpmg --frames rec.mcap --frames rec.mcap --topic $t --poses still.txt
+2> vpm-query: error: give --topic once for each --frames, in their order, or not at all
+[2]
+
 # An image becomes a cloud: the first, or the one of a time; or all of them.
 $ bash record.sh rec.mcap 3; for at in '' '--at +0.034' '--at 1000.0666'; do vpm-normals rec.mcap -o a.vpmc $at --verbose --force 2>&1 | grep -o "is read, of.*\|image of .*\|depth [0-9.]* to [0-9.]* m"; done
 image of 1000.000000000 s is read, of 3

@@ -1,0 +1,39 @@
+# Recordings of several cameras, replayed together.
+
+$ cp $SOURCE/tests/tools/inputs/cube.off .
+$ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 30 --quiet
+$ python3 $SOURCE/tests/tools/frames.py timed left 4 && python3 $SOURCE/tests/tools/frames.py timed right 3
+$ printf '%s\n' '1000.02 depth/1000.000000.png' '1000.08 depth/1000.066667.png' > right/depth.txt && sed 's/ 0 / 0.02 /' right/groundtruth.txt > right.txt
+$ echo '60 0 31.5 0 60 23.5 0 0 1' | xargs -n 3 > left/camera-intrinsics.txt && echo '90 0 31.5 0 90 23.5 0 0 1' | xargs -n 3 > right/camera-intrinsics.txt
+$ printf '%s\n' '1000 0 0 0.95 0 0 0 1' '1000.15 0 0 0.95 0 0 0 1' > still.txt
+$ echo 'vpm-query --tool cube.vpmg --frames left --frames right --poses still.txt "$@"' > ask.sh
+
+# Each step sees the last frame of each camera, which is gone when its next one comes.
+$ bash ask.sh --camera-poses left/groundtruth.txt --camera-poses right.txt -o both.jsonl --view both.html --stats stats.json
+2> vpm-query: note: intrinsics 60,60,31.5,23.5 are read from camera-intrinsics.txt in left
+2> vpm-query: note: intrinsics 90,90,31.5,23.5 are read from camera-intrinsics.txt in right
+2> vpm-query: note: 151 steps in * s, * times real time; latency * us median, * us p99, * us longest; 6 frames used (glob)
+$ python3 -c 'import itertools, json; print(*(f for f, _ in itertools.groupby(json.loads(l)["frame"] for l in open("both.jsonl"))), sep="\n")'
+1000.000000.png
+1000.000000.png;1000.000000.png
+1000.033333.png;1000.000000.png
+1000.066667.png;1000.000000.png
+1000.066667.png;1000.066667.png
+1000.100000.png;1000.066667.png
+$ $VALIDATE query-result both.jsonl && $VALIDATE query-stats stats.json
+
+# A step gives the result of its pose in a scene made afresh of these frames, in either order.
+$ vpm-normals left/depth/1000.066667.png -o left.vpmc --intrinsics 60,60,31.5,23.5 --quiet && vpm-normals right/depth/1000.066667.png -o right.vpmc --intrinsics 90,90,31.5,23.5 --camera-pose 0.02,0,0,0,0,0,1 --quiet
+$ vpm-query --tool cube.vpmg --cloud right.vpmc --cloud left.vpmc --pose 0,0,0.95,0,0,0,1 --quiet | cut -d, -f2- > afresh
+$ grep '1000.066667.png;1000.066667.png' both.jsonl | cut -d, -f4- | sort -u | cmp - afresh
+
+# What tells nothing of one camera among several is refused.
+$ bash ask.sh --camera-poses right.txt
+2> vpm-query: error: give --camera-poses once for each --frames, in their order, or not at all
+[2]
+$ bash ask.sh --camera-pose 0,0,0,0,0,0,1
+2> vpm-query: error: --camera-pose would put the cameras of several --frames at one place: give --camera-poses for each
+[2]
+$ python3 $SOURCE/tests/tools/frames.py numbered numbered 2 && vpm-query --tool cube.vpmg --frames left --frames numbered --poses still.txt --quiet
+2> vpm-query: error: numbered/frame-000000.depth.png: the frames of one camera have times, and those of another numbers; give a list of "time file" lines for each of them
+[1]
