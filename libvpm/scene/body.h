@@ -282,7 +282,7 @@ VPM_HD bool may_hold_free(const B& body, const typename B::BallClass& in_ball, V
 // Return what is seen in the direction of a place, and of all places in a classified ball. A body
 // without a camera knows of no place that is not seen.
 template <MeasuredBody B>
-VPM_HD_RARE Sight sight_at(const B& body, Vec3 x) {
+VPM_HD Sight sight_at(const B& body, Vec3 x) {
   if constexpr (TellsSight<B>)
     return body.sight_at(x);
   else

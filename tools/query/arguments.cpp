@@ -226,9 +226,9 @@ void declare_frames(CLI::App& app, ReplayArguments& a) {
       ->allow_extra_args(false)
       ->option_text("TOPIC");
   app.add_option("--camera-poses", a.camera_poses,
-                 "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
-                 "frames, groundtruth.txt, or TF of a recording. One for each --frames, in their "
-                 "order")
+                 "Path of the camera: TUM text or a pose per frame. Default: NAME.pose.txt beside "
+                 "the frames, groundtruth.txt, or TF of a recording. One for each --frames, in "
+                 "their order")
       ->allow_extra_args(false)
       ->option_text("FILE");
   app.add_option(

@@ -31,7 +31,7 @@ $ bash record.sh tf.mcap 3 tf=base:link; vpm-query --tool cube.vpmg --frames tf.
 # Two cameras of one recording are one scene; a camera that is given twice is that camera.
 $ t=/camera/depth/image_rect_raw; bash record.sh rec.mcap 3; vpm-query --tool cube.vpmg --frames rec.mcap --frames rec.mcap --topic $t --topic $t --poses still.txt --quiet | python3 fractions.py
 [0.25, 0.3, 0.35]
-$ vpm-query --tool cube.vpmg --frames rec.mcap --frames rec.mcap --topic $t --poses still.txt
+$ vpm-query --tool cube.vpmg --frames rec.mcap --frames rec.mcap --topic /camera/depth/image_rect_raw --poses still.txt
 2> vpm-query: error: give --topic once for each --frames, in their order, or not at all
 [2]
 
