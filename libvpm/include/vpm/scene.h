@@ -78,10 +78,10 @@ class VPM_API Body {
   // averaged within what the images disagree by, which they tell themselves. Behind what two
   // cameras see from different sides all is inside, however deep. The order of images changes no
   // bit, and one that is given twice counts once; one image alone is itself. Where a scene lists
-  // such images as bodies of their own, what several see counts several times. Takes a core
-  // 30 ms for four images of 300 000 pixels; frames of a DepthStream on a device are
-  // prepared on the CPU again. Throws Error(invalid_argument) for none, for more than 16, and for a
-  // body that is no depth image; otherwise as the constructor.
+  // such images as bodies of their own, what several see counts several times. Takes a core 30 ms
+  // for four images of 300 000 pixels, most of it once for each image; those of a DepthStream on a
+  // device are prepared on the CPU again. Throws Error(invalid_argument) for none, more than 16, or
+  // a body that is no depth image; otherwise as the constructor.
   static Body of_cameras(std::span<const Body> images);
 
   // Returns the number of points with a normal; waits for a depth image that is being prepared. A
