@@ -109,6 +109,18 @@ TEST(FrameSchedule, AFrameAfterALongGapIsLate) {
     EXPECT_FALSE(change.is_late);
 }
 
+// Cameras of different rates: neither the quick one nor the slow one is late for the other's sake.
+TEST(FrameSchedule, AFrameOfOneCameraIsLateByItsOwnTimes) {
+  const Recording both = joined({frames_at({0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.08, 0.09}),
+                                 frames_at({0.001, 0.041, 0.081, 0.201})});
+  std::vector<double> late;
+  for (const FrameChange& change : changes_of(both, {1000, 1000, 0, 0, false})) {
+    ASSERT_EQ(change.frames.size(), 1U);
+    if (change.is_late) late.push_back(both.frames[change.frames.front()].time);
+  }
+  EXPECT_EQ(late, (std::vector<double>{0.08, 0.201}));
+}
+
 TEST(FrameSchedule, OfNothingIsNothing) {
   const Recording recording;
   EXPECT_FALSE(FrameSchedule(recording, {1000, 10, 0, 0, true}).next());
