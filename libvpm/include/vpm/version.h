@@ -8,10 +8,7 @@
 #define VPM_VERSION_MINOR 1
 #define VPM_VERSION_PATCH 0
 #define VPM_VERSION "0.1.0"
-
-// Raised by one with each version whose libraries cannot take the place of the one before in
-// programs that are compiled: it is the number in libvpm.so.0 and in the Debian package libvpm0.
-#define VPM_ABI 0
+#define VPM_ABI 0  // in libvpm.so.0; raised where compiled programs cannot take new libraries
 
 // True if the headers are of this version or a later one: #if VPM_VERSION_AT_LEAST(0, 2, 0)
 #define VPM_VERSION_AT_LEAST(major, minor, patch) \
