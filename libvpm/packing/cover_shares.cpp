@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/packing/outer_cover.h"
 
@@ -48,9 +49,12 @@ double shared(const Stretches& a, const Stretches& b) {
 class Lines {
  public:
   Lines(const Solid& solid, const std::vector<Sphere>& spheres) : solid_(solid), spheres_(spheres) {
-    for (const Vec3& p : solid.vertices) include(p, 0);
-    for (const Sphere& s : spheres) include(s.center, s.radius);
-    width_ = (high_ - low_) / kLines;
+    for (const Vec3& p : solid.vertices) box_.add(p);
+    for (const Sphere& s : spheres) {
+      const Vec3 reach{s.radius, s.radius, s.radius};
+      box_.add_box({s.center - reach, s.center + reach});
+    }
+    width_ = box_.size() / kLines;
   }
 
   // Returns the volumes of the solid, of the spheres' union, and of what both have.
@@ -65,7 +69,7 @@ class Lines {
     std::vector<std::array<double, 3>> sums(kLines);
     parallel_for(kLines, 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
-        const double z = low_.z + (static_cast<double>(row) + kBeside) * width_.z;
+        const double z = box_.low.z + (static_cast<double>(row) + kBeside) * width_.z;
         sums[row] = measure_row(z, triangles[row]);
       }
     });
@@ -79,13 +83,7 @@ class Lines {
   // Lines go a little beside the middle, so that none meets the edges that modellers like.
   static constexpr double kBeside = 0.4872983346;
 
-  void include(Vec3 p, double radius) {
-    low_ = {std::min(low_.x, p.x - radius), std::min(low_.y, p.y - radius),
-            std::min(low_.z, p.z - radius)};
-    high_ = {std::max(high_.x, p.x + radius), std::max(high_.y, p.y + radius),
-             std::max(high_.z, p.z + radius)};
-  }
-  int row_of(double z) const { return static_cast<int>(std::floor((z - low_.z) / width_.z)); }
+  int row_of(double z) const { return static_cast<int>(std::floor((z - box_.low.z) / width_.z)); }
   std::array<Vec3, 3> corners(std::uint32_t t) const {
     const auto [a, b, c] = solid_.triangles[t];
     return {solid_.vertices[a], solid_.vertices[b], solid_.vertices[c]};
@@ -97,7 +95,7 @@ class Lines {
     std::array<double, 3> sums{};
     Stretches solid, balls;
     for (std::size_t column = 0; column < kLines; ++column) {
-      const double y = low_.y + (static_cast<double>(column) + kBeside) * width_.y;
+      const double y = box_.low.y + (static_cast<double>(column) + kBeside) * width_.y;
       std::vector<double>& ends = crossings[column];
       std::ranges::sort(ends);
       solid.clear();
@@ -132,17 +130,18 @@ class Lines {
     auto [a, b] = ends;
     if (a.y > b.y) std::swap(a, b);
     const auto column_after = [&](double y) {
-      return static_cast<int>(std::ceil((y - low_.y) / width_.y - kBeside));
+      return static_cast<int>(std::ceil((y - box_.low.y) / width_.y - kBeside));
     };
     for (int k = std::max(column_after(a.y), 0); k < std::min(column_after(b.y), kLines); ++k) {
-      const double y = low_.y + (k + kBeside) * width_.y;
+      const double y = box_.low.y + (k + kBeside) * width_.y;
       crossings[static_cast<std::size_t>(k)].push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
     }
   }
 
   const Solid& solid_;
   const std::vector<Sphere>& spheres_;
-  Vec3 low_{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, width_;
+  Box box_;
+  Vec3 width_;  // distances between lines along y and z, m
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/enclosing_sphere.h"
@@ -88,14 +89,10 @@ Pieces pieces_of(const SolidCells& cells, double size) {
 // which the farthest of all is added until none is far outside.
 Sphere sphere_about(const Pieces& pieces, std::span<const std::uint32_t> members) {
   constexpr int kSteps = 24;
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -low;
-  for (const std::uint32_t piece : members) {
-    const Vec3 p = pieces.around[piece].center;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  Box centers;
+  for (const std::uint32_t piece : members) centers.add(pieces.around[piece].center);
   std::vector<Sphere> few;
-  Sphere best{0.5 * (low + high), HUGE_VAL}, next{best.center, 0};
+  Sphere best{0.5 * (centers.low + centers.high), HUGE_VAL}, next{best.center, 0};
   for (int step = 0; step < kSteps; ++step) {
     Sphere farthest;
     double radius = 0;
@@ -167,7 +164,8 @@ std::array<std::vector<std::uint32_t>, 2> divided(const Pieces& pieces, const Gr
   return parts;
 }
 
-// Adds groups until there are `count`, always dividing the one whose sphere wastes most.
+// Divides groups of pieces until there are `count`: each time the one whose sphere has the most
+// volume beyond that of its pieces.
 void divide_until(const Pieces& pieces, std::vector<Group>& groups, std::size_t count) {
   std::make_heap(groups.begin(), groups.end());
   while (groups.size() < count) {

@@ -1,10 +1,11 @@
 #include "libvpm/packing/solid_cells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
+#include "libvpm/core/box.h"
 #include "libvpm/graph/enclosing_sphere.h"
 
 namespace vpm {
@@ -19,9 +20,6 @@ constexpr double kTolerance = 1e-9;
 double& along(Vec3& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
-double along(const Vec3& p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
 
 // Keeps what a polygon has on one side of the plane where the coordinate is `at`: above it if
 // `sign` is 1, below it if it is -1.
@@ -29,7 +27,8 @@ void cut(std::vector<Vec3>& polygon, std::vector<Vec3>& kept, int axis, double a
   kept.clear();
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec3 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
-    const double above_a = sign * (along(a, axis) - at), above_b = sign * (along(b, axis) - at);
+    const double above_a = sign * (coordinate(a, axis) - at),
+                 above_b = sign * (coordinate(b, axis) - at);
     if (above_a >= 0) kept.push_back(a);
     if ((above_a > 0 && above_b < 0) || (above_a < 0 && above_b > 0)) {
       Vec3 p = a + (above_a / (above_a - above_b)) * (b - a);
@@ -46,8 +45,8 @@ std::vector<Sphere> joined(const Cell& cell, const std::vector<Sphere>& balls) {
   for (const Sphere& ball : balls) {
     std::array<int, 3> part{};
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = along(cell.low, axis), side = along(cell.high, axis) - low;
-      const double at = side > 0 ? (along(ball.center, axis) - low) / side : 0;
+      const double low = coordinate(cell.low, axis), side = coordinate(cell.high, axis) - low;
+      const double at = side > 0 ? (coordinate(ball.center, axis) - low) / side : 0;
       part[static_cast<std::size_t>(axis)] =
           std::clamp(static_cast<int>(kParts * at), 0, kParts - 1);
     }
@@ -73,25 +72,18 @@ double Cell::volume() const {
 }
 
 std::array<Cell, 2> Cell::halves() const {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (along(high, k) - along(low, k) > along(high, axis) - along(low, axis)) axis = k;
+  const int axis = Box{low, high}.longest_axis();
   std::array<Cell, 2> both{*this, *this};
-  along(both[0].high, axis) = along(both[1].low, axis) = along(center(), axis);
+  along(both[0].high, axis) = along(both[1].low, axis) = coordinate(center(), axis);
   return both;
 }
 
 SolidCells::SolidCells(const Solid& solid, const Enclosure* enclosure)
     : distance_(solid, enclosure) {
   const UnitFrame& frame = distance_.frame();
-  box_ = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-  for (const Vec3& vertex : solid.vertices) {
-    const Vec3 p = frame.to_unit(vertex);
-    for (int axis = 0; axis < 3; ++axis) {
-      along(box_.low, axis) = std::min(along(box_.low, axis), along(p, axis));
-      along(box_.high, axis) = std::max(along(box_.high, axis), along(p, axis));
-    }
-  }
+  Box box;
+  for (const Vec3& vertex : solid.vertices) box.add(frame.to_unit(vertex));
+  box_ = {box.low, box.high};
   tolerance_ = std::max(kTolerance * frame.longest, frame.rounding / frame.scale);
 }
 
@@ -124,8 +116,8 @@ std::vector<Sphere> SolidCells::hull(const Cell& cell, double slack) const {
     const TriangleBvh::Corners& t = distance_.corners(found[k]);
     polygon = {t.a, t.b, t.c};
     for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
-      cut(polygon, kept, axis, along(cell.low, axis) - tolerance_, 1);
-      cut(polygon, kept, axis, along(cell.high, axis) + tolerance_, -1);
+      cut(polygon, kept, axis, coordinate(cell.low, axis) - tolerance_, 1);
+      cut(polygon, kept, axis, coordinate(cell.high, axis) + tolerance_, -1);
     }
     for (const Vec3& p : polygon) balls.push_back({p, slack});
   }

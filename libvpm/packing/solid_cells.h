@@ -2,8 +2,7 @@
 // all of it.
 #pragma once
 
-#include <cstdint>
-#include <functional>
+#include <array>
 #include <vector>
 
 #include "libvpm/model/sphere.h"
