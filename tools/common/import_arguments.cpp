@@ -17,6 +17,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/length_units.h"
 #include "tools/common/number_checks.h"
+#include "tools/common/remarks.h"
 
 namespace vpm::tools {
 namespace {
@@ -205,12 +206,6 @@ ImportOptions import_options(const Program& program, const ImportArguments& a,
   read_intrinsics(program, a, image, options);
   read_pose(program, a, options);
   return options;
-}
-
-void say(const Program& program, const std::string& name, const Remarks& remarks) {
-  for (const Remark& remark : remarks)
-    remark.is_warning ? program.warn(name + ": " + remark.text)
-                      : program.note(name + ": " + remark.text);
 }
 
 }  // namespace vpm::tools

@@ -32,7 +32,4 @@ void declare_camera(CLI::App& app, ImportArguments& arguments);
 ImportOptions import_options(const Program& program, const ImportArguments& arguments,
                              const std::string& image = {});
 
-// Prints what the readers say about a file.
-void say(const Program& program, const std::string& name, const Remarks& remarks);
-
 }  // namespace vpm::tools

@@ -18,6 +18,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "tools/common/mesh_plugin.h"
+#include "tools/common/remarks.h"
 
 namespace vpm::tools {
 namespace {
@@ -52,6 +53,12 @@ void* load_plugin() {
        {folder / ".." / "lib" / "vpm" / kMeshPlugin, folder / ".." / "lib" / kMeshPlugin})
     if (library == nullptr) library = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   return library;
+}
+
+// Returns the error that a function of the plug-in met; `place` stands where it names none.
+Error error_of(const PackingFault& fault, const std::string& place = {}) {
+  return {static_cast<ErrorKind>(fault.kind), fault.problem,
+          fault.where[0] == 0 ? place : fault.where, fault.hint};
 }
 
 struct Listener {
@@ -98,7 +105,7 @@ Tool tool_of_mesh(const Program& program, const std::string& path) {
   PackingFault fault;
   if (!pack_mesh(path.c_str(), kSpheres, program.common().threads, model.path().c_str(),
                  say_of_mesh, &listener, &fault))
-    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
+    throw error_of(fault);
   Tool tool = Tool::read(model.path());
   program.note(path + ": packed with " + std::to_string(tool.spheres().size()) +
                " spheres for this run; vpm-pack and vpm-graph make a .vpmg to keep, of other units "
@@ -114,7 +121,7 @@ SolidBody solid_of_mesh(const Program& program, const std::string& path, bool wi
   std::optional<SolidBody> solid;
   PackingFault fault;
   if (!read_solid(path.c_str(), &options, with_force, say_of_mesh, &listener, &solid, &fault))
-    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
+    throw error_of(fault);
   return *solid;
 }
 
@@ -125,9 +132,8 @@ RobotOfFiles read_robot_files(const Program& program, const std::string& urdf,
   RobotOfFiles files;
   PackingFault fault;
   if (!read(urdf.c_str(), &options, srdf.c_str(), &files.robot, &files.ignored, &fault))
-    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem, fault.where, fault.hint);
-  for (const auto& [is_warning, text] : files.robot.remarks)
-    is_warning ? program.warn(urdf + ": " + text) : program.note(urdf + ": " + text);
+    throw error_of(fault);
+  say(program, urdf, files.robot.remarks);
   return files;
 }
 
@@ -143,8 +149,7 @@ LinkBodies bodies_of_link(const Program& program, const Robot& robot, std::size_
   PackingFault fault;
   if (!prepare(&robot, link, with_force, spheres, model ? path.c_str() : nullptr, say_of_mesh,
                &listener, &solid, &fault))
-    throw Error(static_cast<ErrorKind>(fault.kind), fault.problem,
-                fault.where[0] == 0 ? name : fault.where, fault.hint);
+    throw error_of(fault, name);
   return {*solid, model ? std::optional(Tool::read(path)) : std::nullopt};
 }
 

@@ -5,7 +5,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/recording/frame_schedule.h"
 #include "tools/common/error_text.h"
-#include "tools/common/import_arguments.h"
+#include "tools/common/remarks.h"
 
 namespace vpm::tools {
 namespace {

@@ -20,6 +20,7 @@
 #include "tools/common/list_run.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/common/remarks.h"
 #include "tools/common/solid_argument.h"
 #include "tools/normals/arguments.h"
 #include "tools/normals/scan_view.h"

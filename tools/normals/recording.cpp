@@ -15,6 +15,7 @@
 #include "libvpm/recording/pose_columns.h"
 #include "tools/common/error_text.h"
 #include "tools/common/recorded_frames.h"
+#include "tools/common/remarks.h"
 #include "tools/normals/arguments.h"
 
 namespace vpm::tools {

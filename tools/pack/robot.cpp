@@ -19,6 +19,7 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "tools/common/error_text.h"
+#include "tools/common/remarks.h"
 #include "tools/pack/outer_fit.h"
 #include "tools/pack/pack_report.h"
 
@@ -190,9 +191,7 @@ nlohmann::json report_of(const Arguments& a, const Robot& robot,
 void run_robot(const Program& program, const Arguments& a) {
   check_exports(a);
   const Robot robot = read_robot(a.urdf, {.package_path = a.packages});
-  for (const Remark& remark : robot.remarks)
-    remark.is_warning ? program.warn(a.urdf + ": " + remark.text)
-                      : program.note(a.urdf + ": " + remark.text);
+  say(program, a.urdf, robot.remarks);
   if (!a.output.empty()) check_folder(a, program.common(), robot);
   std::vector<PackedLink> links = read_links(program, a, robot);
   share_spheres(a, links);

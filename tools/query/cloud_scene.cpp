@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tools/common/error_text.h"
-#include "tools/common/import_arguments.h"
+#include "tools/common/remarks.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {

@@ -22,6 +22,7 @@
 #include "libvpm/setup/size_check.h"
 #include "tools/common/error_text.h"
 #include "tools/common/recorded_frames.h"
+#include "tools/common/remarks.h"
 #include "tools/query/arguments.h"
 #include "tools/query/contact_lines.h"
 #include "tools/query/coupling.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
-#include "tools/common/import_arguments.h"
 #include "tools/common/recorded_frames.h"
+#include "tools/common/remarks.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
