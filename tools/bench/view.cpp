@@ -1,5 +1,6 @@
 #include "tools/bench/view.h"
 
+#include "libvpm/cloud/append.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/synthetic/render.h"
 
@@ -21,12 +22,6 @@ std::vector<Camera> cameras_of(const synthetic::Scene& scene, CloudKind kind) {
   if (kind == CloudKind::points && scene.name == "plate")
     cameras.push_back(looking_at({0, 0, 2}, {0, 0, 1}, {0, 1, 0}));
   return cameras;
-}
-
-void append(const Cloud& part, Cloud& whole) {
-  for (const Vec3f& p : part.positions) whole.positions.push_back(narrow(part.origin + widen(p)));
-  whole.normals.insert(whole.normals.end(), part.normals.begin(), part.normals.end());
-  whole.radii.insert(whole.radii.end(), part.radii.begin(), part.radii.end());
 }
 
 }  // namespace

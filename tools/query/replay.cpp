@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libvpm/api/handle_access.h"
+#include "libvpm/cloud/append.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
@@ -145,15 +146,6 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : between) + name;
   return all;
-}
-
-// Adds the points of another cloud.
-void add_points(const Cloud& more, Cloud& all) {
-  if (all.positions.empty()) all.origin = more.origin;
-  for (const Vec3f& place : more.positions)
-    all.positions.push_back(narrow(widen(place) + (more.origin - all.origin)));
-  all.normals.insert(all.normals.end(), more.normals.begin(), more.normals.end());
-  all.radii.insert(all.radii.end(), more.radii.begin(), more.radii.end());
 }
 
 void check_cameras(const ReplayArguments& a) {
@@ -293,8 +285,11 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
 PointCloud Replay::cloud_of(std::size_t number) const {
   if (recording_.sources > 1) {
     Cloud all;
-    for (const std::size_t frame : shown_[number])
-      add_points(read_frame(recording_.frames[frame], import_).points, all);
+    for (const std::size_t frame : shown_[number]) {
+      const Cloud points = read_frame(recording_.frames[frame], import_).points;
+      if (all.positions.empty()) all.origin = points.origin;
+      append(points, all);
+    }
     return HandleAccess::make<PointCloud>(std::move(all));
   }
   ImportedScan scan = read_frame(recording_.frames[number], import_);
