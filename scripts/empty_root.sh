@@ -2,10 +2,10 @@
 # empty_root.sh [--device-code] [COMMAND ...] [--bare COMMAND ...]: runs commands in an empty Debian 12, to show that this repository
 # needs nothing that happens to be installed here. By default the two commands of the README.
 #
-# Makes a root with mmdebstrap, or debootstrap where that is missing or fails, copies the last commit into it and ../shared beside it where that exists, and runs each
-# COMMAND (a line of shell) in the copy. --device-code then lends the root this machine's CUDA, where it has one, and builds
-# the device code. VPM_CCACHE=FOLDER lends the root a cache of compilers (FOLDER is made), which a COMMAND uses that installs
-# ccache. VPM_PACKAGES=FOLDER copies the Debian packages there to /packages in the root. Commands after --bare run in another
+# Makes a root with mmdebstrap, or debootstrap where that is missing or fails, copies the last commit into it and ../shared beside it where
+# that exists, and runs each COMMAND (a line of shell) in the copy. --device-code then lends the root this machine's CUDA, where it has
+# one, and builds the device code. VPM_CCACHE=FOLDER lends the root a cache of compilers (FOLDER is made), which a COMMAND uses that
+# installs ccache. VPM_PACKAGES=FOLDER copies the Debian packages there to /packages in the root. Commands after --bare run in another
 # root, which is as the first one was before any command, has the packages of its build/release/packages in /packages, and what it
 # has downloaded. Needs root, git, one of the two and the right to mount.
 #

@@ -32,9 +32,9 @@ struct RecordedFrame {
   // True if the recording has camera poses, but none for this frame.
   bool is_lost = false;
   std::function<std::vector<std::byte>()> read = {};  // of MCAP: returns the image as a file
-  // Of several cameras that are replayed together (joined), the one that took the frame, and its
-  // intrinsics if they are known.
+  // The number of the recording among those that joined() was given: 0 if this is the only one.
   std::size_t source = 0;
+  // Intrinsics of its camera; without them those of the import's options count.
   std::optional<Intrinsics> intrinsics{};
 };
 

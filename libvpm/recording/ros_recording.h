@@ -33,8 +33,9 @@ struct Frames {
 // Returns the images of `topic`, or of the only topic of depth images if that is empty.
 Frames read_frames(const std::string& recording, const std::string& topic);
 
-// Poses in a recording: "/topic" of PoseStamped, or of TF "FRAME", in the frame that has no parent,
-// or "WORLD:FRAME"; "" is the only topic of PoseStamped.
+// Names poses in a recording. `poses` is one of these: a topic of PoseStamped, which begins with
+// "/"; "" for the only such topic; a frame of TF, "tool0", whose poses are told in the frame that
+// has no parent; or two frames, "world:tool0", the second in the first.
 struct PosesName {
   std::string recording, poses;
 };

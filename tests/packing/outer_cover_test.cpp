@@ -63,7 +63,8 @@ TEST_P(Families, EveryPointLiesInOneOfExactlySoManySpheres) {
   EXPECT_EQ(uncovered(solid, spheres, 3), 0U);
 }
 
-// A certificate that holds where places are left out would prove nothing.
+// Spheres that lie inside of a solid leave its corners out. Their certificate must not hold, and
+// must name a place that they leave out.
 TEST_P(Families, SpheresInsideHaveNoCertificate) {
   const Solid solid = test::random_solid(GetParam(), 5);
   const std::vector<Sphere> spheres = pack(solid, {.spheres = 20}).spheres;

@@ -119,7 +119,8 @@ TEST_F(RobotTest, SolidsHaveTheVolumesOfTheirShapes) {
   EXPECT_EQ(robot.remarks.size(), 1U);  // of the mirrored mesh
 }
 
-// All of what is inside lies in the round shape, and all of the round shape in what is outside.
+// A polyhedron that is to be inside of a ball has no corner beyond it; one that is to be outside
+// has no face that cuts it.
 TEST_F(RobotTest, PolyhedraAreInsideOrOutside) {
   const Robot robot = read(link("a", "<sphere radius=\"2\"/>"));
   for (const RoundShape round : {RoundShape::inside, RoundShape::outside}) {

@@ -108,8 +108,9 @@ class ReadyRobot {
     return pair.query.run(a, b);
   }
 
-  // Adds what a link shares with another to its answer. Normals times `sign` point out of the link,
-  // whose volume is `volume`, m^3.
+  // Adds to the answer of one of two links the volume that both share, and their contacts. These
+  // have normals out of the first link of the pair: `sign` is 1 for that and -1 for the second.
+  // `volume` is that of the link, m^3.
   static void add_to(LinkAnswer& answer, const Overlap& found, double sign, double volume) {
     answer.result.volume += found.volume;
     answer.result.volume_fraction += found.volume / volume;

@@ -1,4 +1,4 @@
-// Configurations of a robot, as --joints tells them.
+// Reads the file of --joints: the configurations at which the links of a robot are asked.
 #pragma once
 
 #include <vpm/robot.h>

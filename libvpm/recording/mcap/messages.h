@@ -26,7 +26,8 @@ std::string seconds_text(std::uint64_t nanoseconds);
 // Returns the number that this text stands for, so that a time is the same however it is given.
 double seconds_of(std::uint64_t nanoseconds);
 
-// What an image is, without its pixels: "16UC1", or "16UC1; compressedDepth png".
+// Tells of an image all but its pixels. The coding is how its message names what a pixel holds:
+// "16UC1", or "16UC1; compressedDepth png".
 struct ImageKind {
   Header header;
   std::string coding;
