@@ -21,7 +21,7 @@ namespace {
 // Calls body(k) for each job in parallel, since a device waits for it.
 template <class Body>
 void for_each_job(std::size_t count, const Body& body) {
-  constexpr std::size_t kJobsPerTask = 4096;
+  constexpr std::size_t kJobsPerTask = 1024;
   parallel_for(count, kJobsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) body(k);
   });
@@ -329,11 +329,11 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
   for (const AnyBody& body : scene) {
     for_each_job(count, [&](std::size_t k) {
       const std::uint32_t tool = jobs[k].tool;
+      if (&body != scene.data()) sums[k].add(of_body[k]);
       placed[k] = {pose_in_body(body.to_world(), exact[k], queries[tool]->tool_.center_of_mass),
                    tool};
     });
     measures.front()->run(body, measures, placed, of_body);
-    for_each_job(count, [&](std::size_t k) { sums[k].add(of_body[k]); });
   }
   closures.assign(solids.empty() ? 0 : count, 0);
   for (std::size_t k = 0; k < closures.size(); ++k) {
@@ -342,6 +342,7 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
     closures[k] = query.add_solids({solids, jobs[k].solids}, exact[k], sums[k]);
   }
   for_each_job(count, [&](std::size_t k) {
+    if (!scene.empty()) sums[k].add(of_body[k]);  // of the last body
     results[k] = queries[jobs[k].tool]->finished(
         sums[k], exact[k], closures.empty() ? std::nullopt : std::optional(closures[k]));
   });

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "libvpm/core/parallel.h"
 #include "libvpm/measure/body_sum.h"
 
 namespace vpm::cuda {
@@ -19,8 +20,17 @@ class JobOrder {
   };
 
   // Counts and sorts: tools that have jobs, in their order, and of each the jobs in theirs. Stores
-  // the poses in that order.
+  // the poses in that order. The jobs of one tool are in order, so all threads store their poses.
   void order(std::span<const BodyJob> jobs, std::size_t tools, Pose* poses) {
+    places_.clear();
+    if (tools == 1) {
+      parts_.assign(1, {0, static_cast<unsigned>(jobs.size())});
+      constexpr std::size_t kPosesPerTask = 1024;
+      parallel_for(jobs.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) poses[k] = jobs[k].to_body;
+      });
+      return;
+    }
     next_.assign(tools + 1, 0);
     for (const BodyJob& job : jobs) ++next_[job.tool + 1];
     parts_.clear();
@@ -39,11 +49,11 @@ class JobOrder {
 
   const std::vector<Part>& parts() const { return parts_; }
   // Returns the job that an ordered pose is from.
-  std::uint32_t place(std::size_t k) const { return places_[k]; }
+  std::size_t place(std::size_t k) const { return places_.empty() ? k : places_[k]; }
 
  private:
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> places_, next_;
+  std::vector<std::uint32_t> places_, next_;  // of several tools
 };
 
 }  // namespace vpm::cuda

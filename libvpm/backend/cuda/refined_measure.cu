@@ -187,7 +187,7 @@ class RefinedOnDevice : public DeviceMeasure {
       const std::size_t count = std::min(Batch::kJobs, jobs.size() - begin);
       batch_->order.order(jobs.subspan(begin, count), measures.size(), batch_->given.host());
       const std::span<const RawResult> answers = answers_of(surface, measures, count);
-      constexpr std::size_t kAnswersPerTask = 2048;
+      constexpr std::size_t kAnswersPerTask = 1024;
       parallel_for(count, kAnswersPerTask, [&](std::size_t first, std::size_t end) {
         for (std::size_t k = first; k < end; ++k)
           sums[begin + batch_->order.place(k)] = sum_of<Surface>(answers[k]);
