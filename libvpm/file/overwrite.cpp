@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Content { nothing, container, other };
+enum class PathContent { nothing, container, other };
 
 struct Existing {
-  Content content = Content::nothing;
+  PathContent content = PathContent::nothing;
   std::uint32_t kind = 0;  // file::Kind, if content is a container
 };
 
@@ -30,8 +30,8 @@ Existing content_of(const std::string& path) {
   std::ifstream(path, std::ios::binary).read(start, sizeof(start));
   Preamble preamble;
   std::memcpy(&preamble, start, sizeof(preamble));
-  if (std::memcmp(preamble.magic, kMagic, sizeof(kMagic)) != 0) return {Content::other, 0};
-  return {Content::container, preamble.kind};
+  if (std::memcmp(preamble.magic, kMagic, sizeof(kMagic)) != 0) return {PathContent::other, 0};
+  return {PathContent::container, preamble.kind};
 }
 
 // Returns the ending of the path's name in lower case, such as ".vpmp".
@@ -49,9 +49,9 @@ const char* ending_of(Kind kind) {
 
 void refuse_existing(const std::string& path) {
   const Existing existing = content_of(path);
-  if (existing.content == Content::nothing) return;
+  if (existing.content == PathContent::nothing) return;
   const std::string what =
-      existing.content == Content::container
+      existing.content == PathContent::container
           ? std::string(" and is ") + names_of(static_cast<Kind>(existing.kind)).what
           : "";
   throw Error(ErrorKind::invalid_argument, path + " exists" + what, {},
@@ -111,7 +111,7 @@ void check_folder_of(const std::string& path) {
 }
 
 bool is_container(const std::string& path) {
-  return content_of(path).content == Content::container;
+  return content_of(path).content == PathContent::container;
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

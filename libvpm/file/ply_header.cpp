@@ -9,8 +9,6 @@
 namespace vpm::file {
 namespace {
 
-constexpr std::size_t kLongestShown = 40;
-
 ScalarType parse_type(const TextLines& lines, std::string_view word) {
   static constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
       {"char", {'I', 1}},  {"int8", {'I', 1}},    {"uchar", {'U', 1}},  {"uint8", {'U', 1}},
@@ -76,9 +74,9 @@ void check_counts(const PlyHeader& header, std::size_t file_bytes, const std::st
 }  // namespace
 
 bool looks_like_ply(std::string_view bytes) {
-  constexpr std::string_view kMagic = "ply", kAfter = " \t\r\n";
-  return bytes.size() > kMagic.size() && is_word(bytes.substr(0, kMagic.size()), kMagic) &&
-         kAfter.find(bytes[kMagic.size()]) != kAfter.npos;
+  constexpr std::string_view kFirst = "ply", kAfter = " \t\r\n";
+  return bytes.size() > kFirst.size() && is_word(bytes.substr(0, kFirst.size()), kFirst) &&
+         kAfter.find(bytes[kFirst.size()]) != kAfter.npos;
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {

@@ -12,8 +12,6 @@
 namespace vpm::file {
 namespace {
 
-constexpr std::size_t kLongestShown = 40;
-
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }

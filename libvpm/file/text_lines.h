@@ -31,6 +31,9 @@ struct Continuation {
   std::span<const std::string_view> keywords;
 };
 
+// Bytes of a word of a file that messages show.
+inline constexpr std::size_t kLongestShown = 40;
+
 class TextLines {
  public:
   // Skips everything after `comment` on a line; 0 for formats without comments.

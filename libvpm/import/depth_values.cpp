@@ -55,7 +55,7 @@ bool has_many_values(std::span<const float> values) {
   return std::count(found.begin(), found.end(), true) >= kMany;
 }
 
-constexpr float kFewest = 256;  // 8-bit values are smaller
+constexpr float kAbove8Bits = 256;  // 8-bit values are smaller
 
 // True if the lower byte of one value in a hundred is not 0. Otherwise the values may be 8-bit
 // ones, times 256.
@@ -83,7 +83,7 @@ std::vector<double> different_values(std::span<const float> values) {
 
 constexpr double kLevels = 255;       // that 8 bits have, beside 0
 constexpr std::size_t kFewTell = 32;  // so many different values are on one scale by no chance
-constexpr double kWide = 8;           // units; any value is near a multiple of narrower steps
+constexpr double kWideStep = 8;       // units; any value is near a multiple of narrower steps
 constexpr double kRounding = 1;       // units by which a program may have rounded a level
 
 // Returns the step of which all values are multiples, up to the 255th, if that is no step of a
@@ -95,7 +95,7 @@ double even_step(std::span<const double> values, double units_per_metre) {
     const auto is_multiple = [&](double of, double rounding) {
       return [=](double v) { return std::abs(v - std::round(v / of) * of) <= rounding; };
     };
-    if (step < kWide) return 0;
+    if (step < kWideStep) return 0;
     if (!std::ranges::all_of(values, is_multiple(step, kRounding))) continue;
     const bool is_whole = std::ranges::all_of(values, is_multiple(whole, 0));
     return !is_whole ? step : whole >= kCoarse * units_per_metre ? whole : 0;
@@ -106,8 +106,8 @@ double even_step(std::span<const double> values, double units_per_metre) {
 // Returns the factor from each level to the next, if all values are on such a scale of at most 255
 // steps. Returns 0 if there is none. Small values do not tell, since rounding hides their steps.
 double even_factor(std::span<const double> values) {
-  constexpr double kSmall = 256;        // units
-  constexpr double kTells = 2 * kWide;  // units; a quarter of narrower steps is rounding
+  constexpr double kSmall = 256;            // units
+  constexpr double kTells = 2 * kWideStep;  // units; a quarter of narrower steps is rounding
   const auto from =
       static_cast<std::size_t>(std::ranges::lower_bound(values, kSmall) - values.begin());
   const std::span<const double> large = values.subspan(from);
@@ -148,7 +148,7 @@ Remarks eight_bit_suspicion(std::span<const float> values,
 bool are_depths_only_if_swapped(std::span<const float> values) {
   constexpr float kFarthest = 20000;
   const float exchanged = median_of(values, true);
-  return exchanged >= kFewest && exchanged <= kFarthest && median_of(values, false) > kFarthest;
+  return exchanged >= kAbove8Bits && exchanged <= kFarthest && median_of(values, false) > kFarthest;
 }
 
 // True if 16-bit values are far smoother with their two bytes exchanged, and surely so.
@@ -241,10 +241,10 @@ Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
   constexpr double kNearest = 0.3;  // m: median rotated back
   constexpr double kUsual = 1000;   // units per metre
   constexpr std::size_t kFewestPairs = 64, kFewestCrossed = 8;
-  constexpr double kNearlyAll = 0.9;
+  constexpr double kMostPairs = 0.9;
   const RotationSigns signs = rotation_signs(values, width);
   if (signs.pairs < kFewestPairs ||
-      static_cast<double>(signs.nearer) < kNearlyAll * static_cast<double>(signs.pairs))
+      static_cast<double>(signs.nearer) < kMostPairs * static_cast<double>(signs.pairs))
     return {};
   std::vector<float> back;
   for (const float value : values) {

@@ -25,6 +25,10 @@ bool looks_like_off(std::string_view text);
 bool looks_like_om(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 
+// What to do about a file of a scene that cannot be read as it is.
+inline constexpr const char* kExport = "export it as STL or OBJ";
+inline constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
+
 // Indices have 32 bits; the largest stands for "none".
 inline constexpr std::size_t kMaxVertices = 0xfffffffe;
 

@@ -34,8 +34,6 @@
 namespace vpm {
 namespace {
 
-constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
-
 const char* hint_of(MeshFormat format, std::string_view bytes) {
   switch (format) {
     case MeshFormat::dae:

@@ -7,13 +7,11 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/xml_elements.h"
 
 namespace vpm {
 namespace {
-
-constexpr const char* kExport = "export it as STL or OBJ";
-constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
 
 void take_unit(const XmlElement& root, const std::string& name, ThreemfModel& model) {
   const auto unit = root.attribute("unit");

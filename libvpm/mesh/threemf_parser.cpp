@@ -21,9 +21,6 @@
 namespace vpm {
 namespace {
 
-constexpr const char* kExport = "export it as STL or OBJ";
-constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
-
 // Returns the path of the main model: that which the package's relationships name, otherwise that
 // of the usual name, otherwise any.
 std::string main_model_of(ZipArchive& archive) {
@@ -53,14 +50,14 @@ void drop_volumes(ThreemfObject& object) {
       drops_any = is_dropped[k] = true;
   }
   if (!drops_any) return;
-  constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  std::vector<std::uint32_t> index(object.vertices.size(), kNone);
+  constexpr std::uint32_t kDropped = 0xFFFFFFFF;
+  std::vector<std::uint32_t> index(object.vertices.size(), kDropped);
   ThreemfObject kept;
   for (std::size_t k = 0; k < is_dropped.size(); ++k) {
     if (is_dropped[k]) continue;
     Triangle triangle = object.triangles[k];
     for (std::uint32_t& vertex : triangle) {
-      if (index[vertex] == kNone) {
+      if (index[vertex] == kDropped) {
         index[vertex] = static_cast<std::uint32_t>(kept.vertices.size());
         kept.vertices.push_back(object.vertices[vertex]);
       }

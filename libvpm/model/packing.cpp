@@ -9,7 +9,7 @@
 namespace vpm {
 namespace {
 
-constexpr file::ChunkId kSpheres("SPHR"), kVertices("VERT"), kTriangles("TRIA");
+constexpr file::ChunkId kPacked("SPHR"), kVertices("VERT"), kTriangles("TRIA");
 
 static_assert(sizeof(Sphere) == 32 && sizeof(Vec3) == 24 && sizeof(Triangle) == 12,
               "chunks hold these types as they lie in memory");
@@ -54,7 +54,7 @@ void check(const Packing& packing, const std::string& name) {
 
 Packing packing_of(const file::Reader& reader) {
   Packing packing;
-  packing.spheres = reader.read<Sphere>(kSpheres, 0);
+  packing.spheres = reader.read<Sphere>(kPacked, 0);
   packing.solid.vertices = reader.read<Vec3>(kVertices, 0);
   packing.solid.triangles = reader.read<Triangle>(kTriangles, 0);
   packing.provenance = reader.header().value("provenance", nlohmann::json());
@@ -76,7 +76,7 @@ void write_packing(const std::string& path, const Packing& packing) {
   check(packing, path);
   file::Writer writer(file::Kind::packing,
                       {{"unit", "m"}, {"provenance", packing.provenance.json()}});
-  writer.add(kSpheres, 0, std::span(packing.spheres));
+  writer.add(kPacked, 0, std::span(packing.spheres));
   writer.add(kVertices, 0, std::span(packing.solid.vertices));
   writer.add(kTriangles, 0, std::span(packing.solid.triangles));
   writer.write(path);

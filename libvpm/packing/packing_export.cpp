@@ -28,7 +28,7 @@ double rounded_up(double value) {
 namespace {
 
 // Returns x, y and z with `between` between them.
-std::string text_of(Vec3 p, const char* between) {
+std::string coordinates(Vec3 p, const char* between) {
   return digits(p.x) + between + digits(p.y) + between + digits(p.z);
 }
 
@@ -104,7 +104,7 @@ std::string packing_as_vtk(const std::vector<Sphere>& spheres) {
   std::string text =
       "# vtk DataFile Version 3.0\nspheres of a packing\nASCII\nDATASET POLYDATA\nPOINTS " + count +
       " double\n";
-  for (const Sphere& s : spheres) text += text_of(s.center, " ") + '\n';
+  for (const Sphere& s : spheres) text += coordinates(s.center, " ") + '\n';
   text += "VERTICES " + count + ' ' + std::to_string(2 * spheres.size()) + '\n';
   for (std::size_t k = 0; k < spheres.size(); ++k) text += "1 " + std::to_string(k) + '\n';
   text += "POINT_DATA " + count + "\nSCALARS radius double 1\nLOOKUP_TABLE default\n";
@@ -122,7 +122,7 @@ std::string yaml_of(const RobotSpheres& robot, std::size_t blanks) {
   for (const auto& [link, spheres] : robot.links) {
     text += indent + json_text(link) + ":\n";
     for (const Sphere& s : spheres)
-      text += indent + "  - \"center\": [" + text_of(s.center, ", ") + "]\n" + indent +
+      text += indent + "  - \"center\": [" + coordinates(s.center, ", ") + "]\n" + indent +
               "    \"radius\": " + digits(s.radius) + '\n';
   }
   return text;
@@ -150,7 +150,7 @@ std::string packing_as_urdf(const RobotSpheres& robot) {
   for (const auto& [link, spheres] : robot.links) {
     text += "  <link name=\"" + xml_text(link) + "\">\n";
     for (const Sphere& s : spheres)
-      text += "    <collision>\n      <origin xyz=\"" + text_of(s.center, " ") +
+      text += "    <collision>\n      <origin xyz=\"" + coordinates(s.center, " ") +
               "\" rpy=\"0 0 0\"/>\n      <geometry><sphere radius=\"" + digits(s.radius) +
               "\"/></geometry>\n    </collision>\n";
     text += "  </link>\n";
@@ -163,8 +163,8 @@ std::string packing_as_srdf(const RobotSpheres& robot) {
   for (const auto& [link, spheres] : robot.links) {
     text += "  <link_sphere_approximation link=\"" + xml_text(link) + "\">\n";
     for (const Sphere& s : spheres)
-      text += "    <sphere center=\"" + text_of(s.center, " ") + "\" radius=\"" + digits(s.radius) +
-              "\"/>\n";
+      text += "    <sphere center=\"" + coordinates(s.center, " ") + "\" radius=\"" +
+              digits(s.radius) + "\"/>\n";
     text += "  </link_sphere_approximation>\n";
   }
   return text + "</robot>\n";
@@ -176,7 +176,7 @@ std::string robot_as_csv(const RobotSpheres& robot) {
     std::string name = "\"";
     for (const char c : link) name += c == '"' ? "\"\"" : std::string(1, c);
     for (const Sphere& s : spheres)
-      text += name + "\"," + text_of(s.center, ",") + ',' + digits(s.radius) + '\n';
+      text += name + "\"," + coordinates(s.center, ",") + ',' + digits(s.radius) + '\n';
   }
   return text;
 }

@@ -230,7 +230,7 @@ void set_tools(std::vector<Job>& jobs, const py::object& tool) {
     jobs[k].tool = tools.at(static_cast<py::ssize_t>(k));
 }
 
-py::array array_of(const std::vector<SphereState>& states) {
+py::array array_of_states(const std::vector<SphereState>& states) {
   return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(states.size()),
                                    reinterpret_cast<const std::uint8_t*>(states.data()));
 }
@@ -366,7 +366,7 @@ void bind_single_query(py::module_& module, const py::object& collides_kind) {
       .def(
           "states",
           [](LockedQuery& self) {
-            return array_of(self.ask([](Query& query) {
+            return array_of_states(self.ask([](Query& query) {
               const auto states = query.states();
               return std::vector<SphereState>(states.begin(), states.end());
             }));

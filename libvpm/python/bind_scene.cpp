@@ -155,7 +155,7 @@ void bind_cloud(py::module_& module) {
           .c_str());
 }
 
-void bind_body(py::module_& module) {
+void bind_scene_body(py::module_& module) {
   py::class_<Body>(module, "Body", "Body made ready for queries. Immutable and thread-safe.")
       .def(py::init([](const PointCloud& cloud, bool denoising) {
              const py::gil_scoped_release unlocked;
@@ -337,7 +337,7 @@ void bind_stream(py::module_& module) {
 
 void bind_scene(py::module_& module) {
   bind_cloud(module);
-  bind_body(module);
+  bind_scene_body(module);
   bind_remover(module);
   bind_stream(module);
 }

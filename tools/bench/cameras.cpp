@@ -74,13 +74,14 @@ std::vector<CameraScene> make_scenes() {
 
 // Returns cameras .85 to 1.2 m from the scene, in the order in which they are added.
 std::vector<Camera> cameras_around(const CameraScene& scene) {
-  struct Place {
+  struct CameraPlace {
     double around, above, distance;  // degrees, m
   };
-  constexpr Place kPlaces[] = {{20, 42, 0.95}, {200, 36, 1.1}, {112, 48, 0.85}, {290, 40, 1.2}};
+  constexpr CameraPlace kPlaces[] = {
+      {20, 42, 0.95}, {200, 36, 1.1}, {112, 48, 0.85}, {290, 40, 1.2}};
   const Vec3 middle{0, 0, 0.08};
   std::vector<Camera> cameras;
-  for (const Place& place : kPlaces) {
+  for (const CameraPlace& place : kPlaces) {
     const bool is_below = scene.is_seen_from_below && cameras.size() % 2 == 1;
     const double around = place.around * kDegree,
                  above = (is_below ? -place.above : place.above) * kDegree;

@@ -13,7 +13,8 @@
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kClutterNoiseSeed = 11, kThingSeed = 12, kHoleSeed = 13, kPoseSeed = 14;
+constexpr std::uint64_t kClutterNoiseSeed = 11, kThingSeed = 12, kClutterHoleSeed = 13,
+                        kClutterPoseSeed = 14;
 
 // Returns a number of a bell-shaped distribution, -2 to 2.
 double within_two(synthetic::NormalNumbers& numbers) {
@@ -62,7 +63,7 @@ void unset_holes(DepthImage& image) {
   constexpr int kHoles = 60;
   constexpr double kRadius = 9;  // pixels, of an average one
   for (std::uint64_t k = 0; k < kHoles; ++k) {
-    synthetic::NormalNumbers numbers(kHoleSeed, k);
+    synthetic::NormalNumbers numbers(kClutterHoleSeed, k);
     const double u0 = image.width * (0.5 + 0.22 * within_two(numbers)),
                  v0 = image.height * (0.5 + 0.22 * within_two(numbers)),
                  radius = kRadius * (1 + 0.4 * within_two(numbers));
@@ -86,15 +87,15 @@ Cloud make_clutter() {
 }
 
 std::vector<Pose> poses_in_clutter(const Cloud& cloud, std::size_t count) {
-  constexpr double kAside = 0.025;  // m
+  constexpr double kOffSurface = 0.025;  // m
   std::vector<Pose> poses;
   for (std::uint64_t k = 0; poses.size() < count; ++k) {
-    synthetic::NormalNumbers numbers(kPoseSeed, k);
+    synthetic::NormalNumbers numbers(kClutterPoseSeed, k);
     const double fraction = std::fabs(within_two(numbers)) / 2;
     const auto point =
         static_cast<std::size_t>(fraction * static_cast<double>(cloud.positions.size() - 1));
     const Vec3 aside{within_two(numbers), within_two(numbers), within_two(numbers)};
-    const Vec3 at = cloud.origin + widen(cloud.positions[point]) + kAside * aside;
+    const Vec3 at = cloud.origin + widen(cloud.positions[point]) + kOffSurface * aside;
     poses.push_back({random_rotation(numbers), at});
   }
   return poses;

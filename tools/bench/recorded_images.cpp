@@ -16,7 +16,7 @@
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kPoseSeed = 1;
+constexpr std::uint64_t kImagePoseSeed = 1;
 
 struct Frame {
   const char* file;
@@ -96,7 +96,7 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
 }
 
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach) {
-  synthetic::NormalNumbers numbers(kPoseSeed, k);
+  synthetic::NormalNumbers numbers(kImagePoseSeed, k);
   const Rotation rotation = random_rotation(numbers);
   constexpr std::uint64_t kStride = 7919;  // a prime, which visits all of the image
   const std::size_t at = k * kStride % cloud.size();

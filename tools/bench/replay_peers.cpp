@@ -46,11 +46,11 @@ openvdb::FloatGrid::Ptr distances_of(const Solid& solid, double voxel) {
     points.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   std::vector<openvdb::Vec3I> triangles;
   for (const Triangle& t : solid.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  // Widths of the band in voxels; kInside exceeds every distance inside.
-  constexpr float kOutside = 3, kInside = kPeerVoxels;
+  // Widths of the band in voxels; kDeepest exceeds every distance inside.
+  constexpr float kOutside = 3, kDeepest = kPeerVoxels;
   return openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
       *openvdb::math::Transform::createLinearTransform(voxel), points, triangles, {}, kOutside,
-      kInside);
+      kDeepest);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace vpm::bench {
 namespace {
 
 // Offset from the optical axis, so that no symmetry hides an error, m.
-constexpr Vec3 kAside{0.012, -0.007, 0};
+constexpr Vec3 kStartAside{0.012, -0.007, 0};
 
 std::string to_text(Measure measure) {
   return measure == Measure::paper ? "paper" : "refined";
@@ -80,9 +80,9 @@ void Sweeps::run(const SweepCase& c, const SweepSettings& settings) {
   const synthetic::Scene scene = synthetic::make_scene(c.scene);
   const PackedSolid& tool = tool_(c.shape);
   Path path;
-  path.poses = c.group == "all"
-                   ? make_sweep(tool.solid, {c.rotation, kAside}, *scene.surface, settings.poses)
-                   : make_path(tool.solid, c.rotation, *scene.surface, settings.poses);
+  path.poses = c.group == "all" ? make_sweep(tool.solid, {c.rotation, kStartAside}, *scene.surface,
+                                             settings.poses)
+                                : make_path(tool.solid, c.rotation, *scene.surface, settings.poses);
   path.truth = truth_along(tool.solid, path.poses, *scene.surface);
   for (const CloudKind kind : settings.kinds) {
     const auto unseen = unseen_along(tool, path.poses, scene, kind);

@@ -25,7 +25,8 @@
 namespace vpm::bench {
 namespace {
 
-constexpr std::size_t kPlaces = 4096;  // places of a tool that count what the camera cannot know
+constexpr std::size_t kCountedPlaces =
+    4096;                 // places of a tool that count what the camera cannot know
 constexpr int kRuns = 3;  // runs of each query; the fastest counts, since load only slows
 constexpr std::uint32_t kUsual = 1000;  // spheres while something else is varied
 
@@ -101,8 +102,8 @@ class Tradeoff {
     ToolModel model = make_tool(solid, levels_);
     model.calibration = calibrate(model, solid);
     return tools_
-        .try_emplace(shape,
-                     Tool{synthetic::TrueSolid(solid), std::move(model), places_in(solid, kPlaces)})
+        .try_emplace(shape, Tool{synthetic::TrueSolid(solid), std::move(model),
+                                 places_in(solid, kCountedPlaces)})
         .first->second;
   }
 

@@ -40,7 +40,7 @@ auto naming_cloud(const std::string& name, const Make& make) {
   }
 }
 
-std::vector<Body> bodies_of(const std::vector<NamedCloud>& clouds, Denoising points) {
+std::vector<Body> bodies_of_clouds(const std::vector<NamedCloud>& clouds, Denoising points) {
   std::vector<Body> bodies;
   for (const auto& [name, cloud] : clouds)
     bodies.push_back(naming_cloud(name, [&] { return Body(cloud, points); }));
@@ -55,7 +55,7 @@ CloudScene::CloudScene(QuerySetup& setup)
 CloudScene::CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds) : setup_(setup) {
   check_cameras(clouds);
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<Body> images = bodies_of(clouds, setup.points);
+  const std::vector<Body> images = bodies_of_clouds(clouds, setup.points);
   std::vector<Body> bodies = images;
   if (images.size() > 1) bodies = {naming("--cloud", [&] { return Body::of_cameras(images); })};
   bodies.insert(bodies.end(), setup.solids.begin(), setup.solids.end());

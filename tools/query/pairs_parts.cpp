@@ -125,20 +125,20 @@ void keep_one_doubt_of_size(const std::vector<Source*>& sources) {
 
 // Prints what is said of the sources: warnings, of many the first few, and the rest with --verbose.
 void tell(const Program& program, const std::vector<Source*>& sources, double metres) {
-  constexpr std::size_t kMostWarnings = 5;
+  constexpr std::size_t kMostShown = 5;
   keep_one_doubt_of_size(sources);
   std::size_t warnings = 0;
   for (const Source* source : sources)
     for (const auto& [is_warning, text] : source->said) {
       const std::string said = source->file + ": " + in_words_of_units(text, metres);
       warnings += is_warning ? 1 : 0;
-      if (is_warning && (warnings <= kMostWarnings || program.common().verbose))
+      if (is_warning && (warnings <= kMostShown || program.common().verbose))
         program.warn(said);
       else if (!is_warning)
         program.detail(said);
     }
-  if (warnings > kMostWarnings && !program.common().verbose)
-    program.warn(std::to_string(warnings - kMostWarnings) +
+  if (warnings > kMostShown && !program.common().verbose)
+    program.warn(std::to_string(warnings - kMostShown) +
                  " more such warnings; --verbose shows them");
 }
 
