@@ -14,15 +14,15 @@
 namespace vpm {
 namespace {
 
-IntrinsicsFile parse(const std::string& text) {
+IntrinsicsFile parsed(const std::string& text) {
   return parse_intrinsics(bytes_of(text), "file");
 }
-std::string refused(const std::string& text) {
-  return test::refusal([&] { parse(text); });
+std::string refused_file(const std::string& text) {
+  return test::refusal([&] { parsed(text); });
 }
 
 void expect_camera(const std::string& text, std::uint32_t width = 0, std::uint32_t height = 0) {
-  const IntrinsicsFile read = parse(text);
+  const IntrinsicsFile read = parsed(text);
   EXPECT_EQ(read.intrinsics.fx, 525) << text;
   EXPECT_EQ(read.intrinsics.fy, 526) << text;
   EXPECT_EQ(read.intrinsics.cx, 319.5) << text;
@@ -55,14 +55,15 @@ TEST(IntrinsicsFile, ReadsNumbersWithNames) {
 #ifdef VPM_TESTS_YAML
   expect_camera("calib_time: 09-Jan-2012 13:57:47\nK_00: 525 0 319.5 0 526 239.5 0 0 1\n");
 #endif
-  EXPECT_TRUE(says(refused("P2: " + p + "45" + q + "0.003\n"), "`intrinsics` 525,526,319.5,239.5"));
-  EXPECT_TRUE(says(refused("P0: " + p + "0" + q + "0\nP1: " + p + "-386" + q + "0\n"),
+  EXPECT_TRUE(
+      says(refused_file("P2: " + p + "45" + q + "0.003\n"), "`intrinsics` 525,526,319.5,239.5"));
+  EXPECT_TRUE(says(refused_file("P0: " + p + "0" + q + "0\nP1: " + p + "-386" + q + "0\n"),
                    "several cameras: P0, P1"));
-  EXPECT_TRUE(says(refused("fx 1\nfx 2\nfy 1\ncx 1\ncy 1\n"), "gives fx twice"));
+  EXPECT_TRUE(says(refused_file("fx 1\nfx 2\nfy 1\ncx 1\ncy 1\n"), "gives fx twice"));
 }
 
 TEST(IntrinsicsFile, PixelsOfNerfstudioHaveTheirCentresAtHalves) {
-  const IntrinsicsFile read = parse(R"({"fl_x": 525, "fl_y": 526, "cx": 320, "cy": 240})");
+  const IntrinsicsFile read = parsed(R"({"fl_x": 525, "fl_y": 526, "cx": 320, "cy": 240})");
   EXPECT_EQ(read.intrinsics.cx, 319.5);
   EXPECT_EQ(read.intrinsics.cy, 239.5);
   ASSERT_EQ(read.remarks.size(), 1U);
@@ -76,10 +77,10 @@ TEST(IntrinsicsFile, RefusesMatricesOfDisplacedCameras) {
         "525 0 319.5 0  0 526 239.5 2  0 0 1 0  0 0 0 1",
         "525 0 319.5 0  0 526 239.5 0  0 0 1 0  0 0 0 2",
         R"({"K": [525, 0, 319.5, 45, 0, 526, 239.5, 0, 0, 0, 1, 0]})"}) {
-    EXPECT_TRUE(says(refused(text), "is not 0")) << text;
-    EXPECT_TRUE(says(refused(text), "`intrinsics` 525,526,319.5,239.5")) << text;
+    EXPECT_TRUE(says(refused_file(text), "is not 0")) << text;
+    EXPECT_TRUE(says(refused_file(text), "`intrinsics` 525,526,319.5,239.5")) << text;
   }
-  EXPECT_TRUE(says(refused("0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1"), "its 16 numbers"));
+  EXPECT_TRUE(says(refused_file("0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1"), "its 16 numbers"));
 }
 
 TEST(IntrinsicsFile, ReadsJson) {
@@ -114,31 +115,35 @@ TEST(IntrinsicsFile, ReadsMatricesAndListsOfIntrinsics) {
                   640, 480);
   }
   EXPECT_TRUE(
-      says(refused(R"({"camera_model": "omni", "intrinsics": [0.9, 1, 1, 1, 1]})"), "omni"));
-  EXPECT_TRUE(says(refused(R"({"camera_model": "eucm", "intrinsics": [0.9, 1, 1, 1]})"), "eucm"));
+      says(refused_file(R"({"camera_model": "omni", "intrinsics": [0.9, 1, 1, 1, 1]})"), "omni"));
+  EXPECT_TRUE(
+      says(refused_file(R"({"camera_model": "eucm", "intrinsics": [0.9, 1, 1, 1]})"), "eucm"));
 }
 
 TEST(IntrinsicsFile, RefusesSeveralCamerasOfOneObjectByTheirNames) {
   const std::string m = kMatrix, other = "[524,0,319.5, 0,526,239.5, 0,0,1]";
   const std::string list = R"({"intrinsics": [1, 1, 1, 1]})",
                     second = R"({"intrinsics": [1, 2, 1, 1]})";
-  EXPECT_TRUE(says(refused(R"({"M1": )" + m + R"(, "M2": )" + other + "}"), "cameras: M1, M2"));
-  EXPECT_TRUE(says(refused(R"({"cam0": )" + list + R"(, "cam1": )" + second + "}"), "cam0, cam1"));
-  EXPECT_TRUE(says(refused(R"({"Camera1.fx": 1, "Camera1.fy": 1, "Camera1.cx": 1, "Camera1.cy": 1,
+  EXPECT_TRUE(
+      says(refused_file(R"({"M1": )" + m + R"(, "M2": )" + other + "}"), "cameras: M1, M2"));
+  EXPECT_TRUE(
+      says(refused_file(R"({"cam0": )" + list + R"(, "cam1": )" + second + "}"), "cam0, cam1"));
+  EXPECT_TRUE(
+      says(refused_file(R"({"Camera1.fx": 1, "Camera1.fy": 1, "Camera1.cx": 1, "Camera1.cy": 1,
                                "Camera2.fx": 2, "Camera2.fy": 1, "Camera2.cx": 1, "Camera2.cy": 1})"),
-                   "camera1, camera2"));
+           "camera1, camera2"));
   expect_camera(R"({"M0": [525,0,319.5, 0,526,239.5, 0,0,1], "M1": "none"})");
 }
 
 TEST(IntrinsicsFile, RefusesWhatTellsNoCamera) {
-  EXPECT_TRUE(says(refused("1 2 3\n"), "3 numbers"));
-  EXPECT_TRUE(says(refused(R"({"fx": 525})"), "no camera's intrinsics"));
+  EXPECT_TRUE(says(refused_file("1 2 3\n"), "3 numbers"));
+  EXPECT_TRUE(says(refused_file(R"({"fx": 525})"), "no camera's intrinsics"));
   EXPECT_TRUE(says(
-      refused(
+      refused_file(
           R"({"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 2, "cy": 1}})"),
       "left, right"));
-  EXPECT_TRUE(says(refused("0 526 319.5 239.5"), "focal lengths"));
-  EXPECT_TRUE(says(refused(std::string("fx = 1\0", 8)), "not a text"));
+  EXPECT_TRUE(says(refused_file("0 526 319.5 239.5"), "focal lengths"));
+  EXPECT_TRUE(says(refused_file(std::string("fx = 1\0", 8)), "not a text"));
 }
 
 TEST(IntrinsicsFile, RefusesACameraThatWasNeverCalibrated) {
@@ -147,8 +152,8 @@ TEST(IntrinsicsFile, RefusesACameraThatWasNeverCalibrated) {
            R"({"width": 640, "height": 480, "K": )" + nine + R"(, "P": )" + twelve + "}",
            R"({"camera_matrix": {"rows": 3, "cols": 3, "data": )" + nine + "}}",
            R"({"K": [[0,0,0],[0,0,0],[0,0,0]]})", R"({"depth": {"k": )" + nine + "}}"}) {
-    EXPECT_TRUE(says(refused(text), "is all zeros")) << refused(text);
-    EXPECT_TRUE(says(refused(text), "calibrate the camera")) << refused(text);
+    EXPECT_TRUE(says(refused_file(text), "is all zeros")) << refused_file(text);
+    EXPECT_TRUE(says(refused_file(text), "calibrate the camera")) << refused_file(text);
   }
   // Another matrix in it serves.
   expect_camera(R"({"K": )" + nine + R"(, "P": [525,0,319.5,0, 0,526,239.5,0, 0,0,1,0]})");
@@ -156,15 +161,15 @@ TEST(IntrinsicsFile, RefusesACameraThatWasNeverCalibrated) {
 
 TEST(IntrinsicsFile, RefusesOtherFormatsByTheirNames) {
   for (const std::string start : {"", "\xEF\xBB\xBF", "\n "}) {
-    EXPECT_TRUE(says(refused(start + "<?xml version=\"1.0\"?>\n<opencv_storage/>"), "XML"));
-    EXPECT_TRUE(says(refused(start + "<opencv_storage/>"), ".yml"));
+    EXPECT_TRUE(says(refused_file(start + "<?xml version=\"1.0\"?>\n<opencv_storage/>"), "XML"));
+    EXPECT_TRUE(says(refused_file(start + "<opencv_storage/>"), ".yml"));
   }
-  EXPECT_TRUE(says(refused("\x1f\x8b"), "gzip"));
+  EXPECT_TRUE(says(refused_file("\x1f\x8b"), "gzip"));
 }
 
 TEST(IntrinsicsFile, SaysThatDistortionIsNotUsed) {
   const IntrinsicsFile read =
-      parse(R"({"K": [525,0,319.5, 0,526,239.5, 0,0,1], "D": [0.1, 0, 0, 0, 0]})");
+      parsed(R"({"K": [525,0,319.5, 0,526,239.5, 0,0,1], "D": [0.1, 0, 0, 0, 0]})");
   ASSERT_EQ(read.remarks.size(), 1U);
   EXPECT_TRUE(read.remarks[0].is_warning);
 }
@@ -180,24 +185,24 @@ TEST(IntrinsicsFile, SaysThatDistortionOfSeparateKeysIsNotUsed) {
   for (const char* key : {"k1", "k2", "k3", "p1", "p2", "K1", "k_1"}) {
     for (const std::string before : {"", "Camera.", "Camera1."}) {
       const std::string name = '"' + before + key + "\": ";
-      const Remarks remarks = parse(with(name + "0.26", before)).remarks;
+      const Remarks remarks = parsed(with(name + "0.26", before)).remarks;
       ASSERT_EQ(remarks.size(), 1U) << name;
       EXPECT_TRUE(remarks[0].is_warning);
       EXPECT_TRUE(says(remarks[0].text, "distortion in it is not used"));
-      EXPECT_TRUE(parse(with(name + "0", before)).remarks.empty()) << name;
+      EXPECT_TRUE(parsed(with(name + "0", before)).remarks.empty()) << name;
     }
   }
   for (const char* key : {"distCoeffs", "distortionCoefficients", "Distortion_Coefficients"})
-    EXPECT_EQ(parse(with('"' + std::string(key) + "\": [0, 0.1]")).remarks.size(), 1U) << key;
+    EXPECT_EQ(parsed(with('"' + std::string(key) + "\": [0, 0.1]")).remarks.size(), 1U) << key;
   const std::string m = R"({"M1": [525,0,319.5, 0,526,239.5, 0,0,1], "D1": )";
-  EXPECT_EQ(parse(m + "[0.1, 0, 0, 0]}").remarks.size(), 1U);
-  EXPECT_TRUE(parse(m + "[0, 0, 0, 0]}").remarks.empty());
+  EXPECT_EQ(parsed(m + "[0.1, 0, 0, 0]}").remarks.size(), 1U);
+  EXPECT_TRUE(parsed(m + "[0, 0, 0, 0]}").remarks.empty());
 }
 
 // Returns what is said of a factor in a file, where `given` was given.
 std::string said_of(const std::string& factor, std::optional<double> given = std::nullopt) {
   std::string said;
-  for (const Remark& remark : unused_factor(parse(with(factor)).factor, given))
+  for (const Remark& remark : unused_factor(parsed(with(factor)).factor, given))
     said += (remark.is_warning ? "warning: " : "note: ") + remark.text;
   return said;
 }
@@ -228,7 +233,8 @@ TEST(IntrinsicsFile, SaysNothingOfFactorsThatAreTheDefault) {
 }
 
 TEST(IntrinsicsFile, FindsTheDepthFactorBesideTheCamera) {
-  const IntrinsicsFile read = parse(R"({"depth_scale": 0.1, "depth": )" + with("\"w\": 640") + "}");
+  const IntrinsicsFile read =
+      parsed(R"({"depth_scale": 0.1, "depth": )" + with("\"w\": 640") + "}");
   ASSERT_TRUE(read.factor);
   EXPECT_EQ(read.factor->units_per_metre, 10000);
 }
@@ -237,26 +243,26 @@ TEST(IntrinsicsFile, TakesTheRectifiedCameraWhereTheLensDistorts) {
   const std::string k = R"("K": [500,0,300, 0,500,200, 0,0,1], )",
                     p = R"("P": [525,0,319.5,-40, 0,526,239.5,0, 0,0,1,0])";
   expect_camera("{" + k + R"("D": [0.1, 0, 0, 0, 0], )" + p + "}");
-  const IntrinsicsFile both = parse("{" + k + R"("D": [0.1, 0, 0, 0, 0], )" + p + "}");
+  const IntrinsicsFile both = parsed("{" + k + R"("D": [0.1, 0, 0, 0, 0], )" + p + "}");
   ASSERT_EQ(both.remarks.size(), 1U);
   EXPECT_TRUE(says(both.remarks[0].text, "its P is used, 525,526,319.5,239.5"));
-  const IntrinsicsFile plain = parse("{" + k + R"("D": [0, 0, 0, 0, 0], )" + p + "}");
+  const IntrinsicsFile plain = parsed("{" + k + R"("D": [0, 0, 0, 0, 0], )" + p + "}");
   EXPECT_EQ(plain.intrinsics.fx, 500);
   ASSERT_EQ(plain.remarks.size(), 1U);
   EXPECT_TRUE(says(plain.remarks[0].text, "its K is used"));
-  const IntrinsicsFile empty = parse("{" + k + R"("D": [0.1], "P": [0,0,0,0, 0,0,0,0, 0,0,0,0]})");
+  const IntrinsicsFile empty = parsed("{" + k + R"("D": [0.1], "P": [0,0,0,0, 0,0,0,0, 0,0,0,0]})");
   EXPECT_EQ(empty.intrinsics.fx, 500);
 }
 
 TEST(IntrinsicsFile, ReadsTheRegionOfInterest) {
   const std::string k = R"({"K": [500,0,300, 0,500,200, 0,0,1], "roi": )";
   const auto region =
-      parse(k + R"({"x_offset": 10, "y_offset": 0, "width": 140, "height": 110}})").region;
+      parsed(k + R"({"x_offset": 10, "y_offset": 0, "width": 140, "height": 110}})").region;
   ASSERT_TRUE(region);
   EXPECT_EQ(region->left, 10U);
   EXPECT_EQ(region->top, 0U);
   EXPECT_EQ(region->width, 140U);
-  EXPECT_FALSE(parse(k + R"({"x_offset": 0, "y_offset": 0, "width": 0, "height": 0}})").region);
+  EXPECT_FALSE(parsed(k + R"({"x_offset": 0, "y_offset": 0, "width": 0, "height": 0}})").region);
 }
 
 #ifdef VPM_TESTS_YAML
@@ -282,7 +288,7 @@ TEST(IntrinsicsFile, ReadsYaml) {
       "camera_model: pinhole\nresolution: [640, 480]\n"
       "intrinsics: [525, 526, 319.5, 239.5] #fu, fv, cu, cv\n",
       640, 480);  // EuRoC
-  EXPECT_TRUE(says(refused("a: [1\n"), "not YAML"));
+  EXPECT_TRUE(says(refused_file("a: [1\n"), "not YAML"));
 }
 #endif
 
@@ -298,7 +304,7 @@ std::string scene_camera(std::size_t images, bool differ) {
 
 TEST(IntrinsicsFile, CamerasThatAreTheSameAreOne) {
   for (const std::size_t images : {1U, 2U, 1000U}) {
-    const IntrinsicsFile read = parse(scene_camera(images, false));
+    const IntrinsicsFile read = parsed(scene_camera(images, false));
     EXPECT_EQ(read.intrinsics.fx, 525);
     ASSERT_TRUE(read.factor);
     EXPECT_EQ(read.factor->units_per_metre, 10000);
@@ -345,7 +351,8 @@ TEST(IntrinsicsFile, ReadsUtf16AndArrays) {
   };
   expect_camera(npy("(3, 3)", {525, 0, 319.5, 0, 526, 239.5, 0, 0, 1}));
   expect_camera(npy("(4,)", {525, 526, 319.5, 239.5}));
-  EXPECT_TRUE(says(refused(npy("(5, 4)", std::vector<double>(20, 1))), "an array of 5 x 4 is no"));
+  EXPECT_TRUE(
+      says(refused_file(npy("(5, 4)", std::vector<double>(20, 1))), "an array of 5 x 4 is no"));
 }
 
 TEST(IntrinsicsFile, OtherFilesAreNamed) {
@@ -356,8 +363,8 @@ TEST(IntrinsicsFile, OtherFilesAreNamed) {
            {"\x1a\x45\xdf\xa3", "a Matroska recording"},
            {"\x89PNG\r\n", "a PNG picture"},
            {"ply\n", "a PLY file"}}) {
-    EXPECT_TRUE(says(refused(start), "this is " + name)) << start;
-    EXPECT_TRUE(says(refused(start), "`intrinsics` fx,fy,cx,cy")) << start;
+    EXPECT_TRUE(says(refused_file(start), "this is " + name)) << start;
+    EXPECT_TRUE(says(refused_file(start), "`intrinsics` fx,fy,cx,cy")) << start;
   }
 }
 

@@ -23,10 +23,6 @@ bool says(const std::vector<std::string>& messages, const std::string& part) {
   return false;
 }
 
-bool contains(const std::string& message, const std::string& part) {
-  return message.find(part) != std::string::npos;
-}
-
 TEST(MeshCheck, AcceptsAClosedMeshAsItIs) {
   const Solid cube = make_cube(2);
   const CheckedSolid checked = solid_of(cube);

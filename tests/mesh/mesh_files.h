@@ -27,6 +27,10 @@ std::string refusal_of(const std::string& content, const std::string& name,
                        const SolidOptions& options = {});
 std::string refusal_of(const Solid& solid);
 
+inline bool contains(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
+}
+
 // Returns both in one mesh.
 Solid together(const Solid& a, const Solid& b);
 Solid moved(Solid solid, Vec3 by);

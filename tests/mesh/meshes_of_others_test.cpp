@@ -13,7 +13,7 @@
 namespace vpm::test {
 namespace {
 
-struct Row {
+struct MeshOfOthers {
   const char* file;
   double volume;     // m^3
   double tolerance;  // m^3
@@ -24,7 +24,7 @@ TEST(MeshesOfOthers, HaveTheirVolumes) {
   const std::string folder = std::string(VPM_SOURCE_DIR) + "/../shared/data/reports3/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data";
   constexpr double kExact = 1e-9, kFloat = 1e-7;
-  const std::vector<Row> rows = {
+  const std::vector<MeshOfOthers> rows = {
       {"C07/a.3mf", .006, kExact, 0, .1},
       {"C08/a.3mf", .006, kExact, 0, .1},
       {"written-by-others/three-mirrored-cube.stl", .001, kFloat, -.05, .05},
@@ -33,7 +33,7 @@ TEST(MeshesOfOthers, HaveTheirVolumes) {
       {"written-by-others/gltf-transform-quantized-box.glb", .00024, kFloat, .9, 1.1},
       {"written-by-others/gltf-transform-two-instances.glb", .002, kFloat, -.05, .55},
   };
-  for (const Row& row : rows) {
+  for (const MeshOfOthers& row : rows) {
     try {
       const MeshFacts facts = make_solid(read_mesh(folder + row.file)).facts;
       EXPECT_NEAR(facts.volume, row.volume, row.tolerance) << row.file;

@@ -28,10 +28,6 @@ using synthetic::make_cube;
 using synthetic::make_icosphere;
 using synthetic::make_torus;
 
-bool contains(const std::string& message, const std::string& part) {
-  return message.find(part) != std::string::npos;
-}
-
 // Returns the solid without the triangles whose corners all lie above the height.
 Solid cut_open(Solid solid, double height) {
   std::erase_if(solid.triangles, [&](const Triangle& t) {

@@ -35,7 +35,7 @@ class Threemf : public testing::Test {
   }
 };
 
-std::string text(double number) {
+std::string decimal(double number) {
   return std::to_string(number);
 }
 
@@ -45,8 +45,8 @@ std::pair<std::string, std::string> cube(double edge, double x = 0, std::uint32_
   const Solid solid = synthetic::make_cube(edge);
   std::string vertices, triangles;
   for (const Vec3& v : solid.vertices) {
-    vertices +=
-        "<vertex x=\"" + text(v.x + x) + "\" y=\"" + text(v.y) + "\" z=\"" + text(v.z) + "\"/>";
+    vertices += "<vertex x=\"" + decimal(v.x + x) + "\" y=\"" + decimal(v.y) + "\" z=\"" +
+                decimal(v.z) + "\"/>";
   }
   for (const Triangle& t : solid.triangles) {
     triangles += "<triangle v1=\"" + std::to_string(first + t[0]) + "\" v2=\"" +
@@ -206,7 +206,7 @@ std::string metadata(const std::string& key, const std::string& value) {
   return "<metadata type=\"volume\" key=\"" + key + "\" value=\"" + value + "\"/>";
 }
 
-std::string two_cubes(const std::string& of_mesh = "", double x = 0) {
+std::string model_of_two_cubes(const std::string& of_mesh = "", double x = 0) {
   const auto small = cube(1), large = cube(3, x, 8);
   return object(1, "", mesh_of({small.first + large.first, small.second + large.second}, of_mesh));
 }
@@ -216,18 +216,23 @@ TEST_F(Threemf, PrusaSlicersVolumesThatAreNoSolidAreLeftOut) {
     const std::string note = "1 part is left out as no part of the solid: " + type;
     const std::vector<ZippedFile> settings = {
         prusa(metadata("modifier", "1") + metadata("volume_type", type))};
-    expect_volume(package(two_cubes(), item(1), settings), 1, note);
-    EXPECT_EQ(solid_of(package(two_cubes(), item(1), settings), "a.3mf").facts.unused_vertices, 0U);
+    expect_volume(package(model_of_two_cubes(), item(1), settings), 1, note);
+    EXPECT_EQ(
+        solid_of(package(model_of_two_cubes(), item(1), settings), "a.3mf").facts.unused_vertices,
+        0U);
   }
-  expect_volume(package(two_cubes(), item(1), {prusa(metadata("modifier", "1"))}), 1, "modifier");
-  expect_volume(package(two_cubes("", 10), item(1), {prusa(metadata("volume_type", "ModelPart"))}),
-                28);
-  expect_refusal(package(two_cubes(), item(1), {prusa(metadata("volume_type", "NegativeVolume"))}),
-                 "of the type NegativeVolume, which would have to be cut away");
+  expect_volume(package(model_of_two_cubes(), item(1), {prusa(metadata("modifier", "1"))}), 1,
+                "modifier");
+  expect_volume(
+      package(model_of_two_cubes("", 10), item(1), {prusa(metadata("volume_type", "ModelPart"))}),
+      28);
+  expect_refusal(
+      package(model_of_two_cubes(), item(1), {prusa(metadata("volume_type", "NegativeVolume"))}),
+      "of the type NegativeVolume, which would have to be cut away");
   const std::string slic3r =
       R"(<slic3r:volumes xmlns:slic3r="x"><slic3r:volume ts="0" te="11" modifier="0"/>)"
       R"(<slic3r:volume ts="12" te="23" modifier="1"/></slic3r:volumes>)";
-  expect_volume(package(two_cubes(slic3r), item(1)), 1, "modifier");
+  expect_volume(package(model_of_two_cubes(slic3r), item(1)), 1, "modifier");
 }
 
 TEST_F(Threemf, BambusPartsThatAreNoSolidAreLeftOut) {
@@ -316,7 +321,7 @@ TEST_F(Threemf, PrusaSlicer3sVolumesThatAreNoSolidAreLeftOut) {
 TEST_F(Threemf, SuperSlicersSettingsAreThoseOfPrusaSlicer) {
   ZippedFile settings = prusa(metadata("volume_type", "ParameterModifier"));
   settings.path = "Metadata/SuperSlicer_model.config";
-  expect_volume(package(two_cubes(), item(1), {settings}), 1, "ParameterModifier");
+  expect_volume(package(model_of_two_cubes(), item(1), {settings}), 1, "ParameterModifier");
 }
 
 TEST_F(Threemf, ObjectsOfOtherPartsOfThePackageAreRead) {

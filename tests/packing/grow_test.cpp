@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "libvpm/core/error.h"
@@ -25,10 +24,6 @@ double filled(const std::vector<Sphere>& spheres) {
   double sum = 0;
   for (const Sphere& s : spheres) sum += volume(s);
   return sum;
-}
-
-bool same_bytes(const std::vector<Sphere>& a, const std::vector<Sphere>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Sphere)) == 0;
 }
 
 void expect_packing(const Solid& solid, const std::vector<Sphere>& spheres) {

@@ -39,23 +39,6 @@ struct Hostile {
   Verdict as_it_is, with_holes_filled, from_voxels;
 };
 
-RawMesh raw(const Solid& solid) {
-  RawMesh mesh;
-  mesh.format = MeshFormat::off;
-  mesh.name = "hostile";
-  mesh.vertices = solid.vertices;
-  for (const Triangle& t : solid.triangles) {
-    mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
-  }
-  return mesh;
-}
-
-Solid shifted(Solid solid, Vec3 by) {
-  for (Vec3& p : solid.vertices) p += by;
-  return solid;
-}
-
 // Joins equal vertices, as in a file that lists each point once.
 Solid welded(Solid solid) {
   for (Triangle& t : solid.triangles) {

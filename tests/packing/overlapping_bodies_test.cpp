@@ -16,20 +16,6 @@ using synthetic::make_box;
 using synthetic::make_cube;
 using synthetic::make_icosphere;
 
-Solid shifted(const Solid& solid, Vec3 by) {
-  return moved(solid, Rotation{}, by);
-}
-
-RawMesh raw(const Solid& solid) {
-  RawMesh mesh;
-  mesh.vertices = solid.vertices;
-  for (const Triangle& t : solid.triangles) {
-    mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
-  }
-  return mesh;
-}
-
 // Returns the coverage of the bodies' packing, certified and counted on voxels too.
 double covered(const Solid& solid, std::size_t spheres) {
   const PackResult result = pack(solid, {.spheres = spheres});

@@ -16,7 +16,7 @@ class RandomSolids : public ::testing::TestWithParam<int> {};
 
 constexpr std::uint64_t kSeeds = 25;  // for each of the eight families: 200 solids
 constexpr std::size_t kSpheres = 40;
-constexpr double kRounding = 1e-13;  // for coordinates up to 5 and triangles up to 1:1000
+constexpr double kPropertyRounding = 1e-13;  // for coordinates up to 5 and triangles up to 1:1000
 
 TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -33,9 +33,10 @@ TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
                        [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; }));
     const Certificate certificate = certify(solid, result.spheres);
     EXPECT_TRUE(certificate.holds);
-    EXPECT_NEAR(certificate.max_protrusion, worst_protrusion(surface, result.spheres), kRounding);
+    EXPECT_NEAR(certificate.max_protrusion, worst_protrusion(surface, result.spheres),
+                kPropertyRounding);
     EXPECT_NEAR(certificate.max_overlap,
-                std::max(worst_overlap(result.spheres), -certificate.tolerance), kRounding);
+                std::max(worst_overlap(result.spheres), -certificate.tolerance), kPropertyRounding);
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -16,10 +15,6 @@ namespace vpm::test {
 namespace {
 
 constexpr double kRounding = 1e-11;  // relative; the packer's own margin is 1e-12
-
-bool same_bytes(const std::vector<Sphere>& a, const std::vector<Sphere>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Sphere)) == 0;
-}
 
 TEST(Packer, CubeIsFilledAsGeometrySays) {
   const PackResult result = pack(synthetic::make_cube(2), {.spheres = 9});

@@ -3,10 +3,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <random>
+#include <vector>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/solid.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/synthetic/shapes.h"
 
 namespace vpm::test {
@@ -34,6 +38,10 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+inline Solid shifted(Solid solid, Vec3 by) {
+  for (Vec3& p : solid.vertices) p += by;
+  return solid;
+}
 inline Solid moved(Solid solid, const Rotation& turn, Vec3 shift) {
   for (Vec3& p : solid.vertices) p = turn * p + shift;
   return solid;
@@ -104,6 +112,23 @@ inline Solid random_solid(int family, std::uint64_t seed) {
     default:
       return moved(joined(box(), moved(box(), random.rotation(), {3, 1, 0})), turn, shift);
   }
+}
+
+// Returns the solid as a file of it would be read.
+inline RawMesh raw(const Solid& solid) {
+  RawMesh mesh;
+  mesh.format = MeshFormat::off;
+  mesh.name = "test";
+  mesh.vertices = solid.vertices;
+  for (const Triangle& t : solid.triangles) {
+    mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
+    mesh.polygon_end.push_back(mesh.corners.size());
+  }
+  return mesh;
+}
+
+inline bool same_bytes(const std::vector<Sphere>& a, const std::vector<Sphere>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Sphere)) == 0;
 }
 
 }  // namespace vpm::test

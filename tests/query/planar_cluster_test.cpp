@@ -13,20 +13,20 @@ namespace {
 
 using testing::see;
 
-constexpr double kReach = 0.015;  // radius of the clusters, m
+constexpr double kClusterReach = 0.015;  // radius of the clusters, m
 
 // Finds the plane of a cluster about a place of the scene, in camera coordinates. Returns false if
 // it is not planar.
 bool plane_at(const DepthBody& cloud, Vec3 center, TangentPlane& plane) {
   const DepthSurface surface = cloud.surface();
-  return finds_cluster_plane(surface, surface.classify_ball(center, kReach), center, kReach,
-                             HUGE_VAL, SampleInTurn{}, plane);
+  return finds_cluster_plane(surface, surface.classify_ball(center, kClusterReach), center,
+                             kClusterReach, HUGE_VAL, SampleInTurn{}, plane);
 }
 
 // Returns the mean height of the plane over the surface, at places of a box in the cluster's ball.
 double mean_height(const TangentPlane& plane, const synthetic::Surface& surface, Vec3 center) {
   constexpr int kPlaces = 5;
-  const double half = kReach / std::sqrt(3.0);
+  const double half = kClusterReach / std::sqrt(3.0);
   double sum = 0;
   for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
     const auto along = [&](int place) { return half * ((place + 0.5) / kPlaces * 2 - 1); };
@@ -44,7 +44,7 @@ TEST_P(PatchOnABall, IsAsHighAsTheSurfaceInTheMean) {
   const DepthBody cloud(see(scene));
   // Bounds the mean height of a tangent plane.
   constexpr double kSmallestRadius = 0.25, kLargestRadius = 0.3;
-  const double sagitta = kReach * kReach / (9 * kLargestRadius);
+  const double sagitta = kClusterReach * kClusterReach / (9 * kLargestRadius);
   int seen = 0;
   for (const double u : {-0.08, -0.03, 0.0, 0.05}) {
     for (const double deep : {-0.005, 0.0, 0.005}) {
@@ -56,7 +56,7 @@ TEST_P(PatchOnABall, IsAsHighAsTheSurfaceInTheMean) {
       EXPECT_LE(std::abs(mean_height(plane, *scene.surface, center)), 0.35 * sagitta)
           << "at " << center.x << ", " << deep << " m deep";
       const double tilt = norm(plane.normal - scene.surface->gradient(plane.foot));
-      EXPECT_LE(tilt, 0.1 * kReach / kSmallestRadius);
+      EXPECT_LE(tilt, 0.1 * kClusterReach / kSmallestRadius);
     }
   }
   EXPECT_EQ(seen, 12);

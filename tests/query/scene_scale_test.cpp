@@ -11,11 +11,12 @@
 namespace vpm {
 namespace {
 
-constexpr double kReach = 0.17;
+constexpr double kToolReach = 0.17;
 constexpr double kPixel = 1.0 / 525;  // metres at 1 m
 
 SceneScale scale_of(const char* scene) {
-  return scene_scale(AnyBody(testing::see(synthetic::make_scene(scene))), kReach, Vec3{0, 0, 1});
+  return scene_scale(AnyBody(testing::see(synthetic::make_scene(scene))), kToolReach,
+                     Vec3{0, 0, 1});
 }
 
 TEST(SceneScale, OfAWallIsItsPixels) {
@@ -24,7 +25,7 @@ TEST(SceneScale, OfAWallIsItsPixels) {
   EXPECT_LT(scale.noise, 1e-6);
   EXPECT_LT(scale.curvature, 0.01);
   EXPECT_NEAR(scale.smallest_radius(), kPixel / std::sqrt(2.0), 0.1 * kPixel);
-  EXPECT_GT(scale.largest_radius(), kReach / 2);
+  EXPECT_GT(scale.largest_radius(), kToolReach / 2);
 }
 
 TEST(SceneScale, TellsTheRadiusOfABall) {
@@ -50,7 +51,7 @@ TEST(SceneScale, TellsTheNoiseOfTheSensor) {
     const double u = static_cast<double>(state >> 11) * 0x1p-53;
     p.z += static_cast<float>(amplitude * (2 * u - 1));
   }
-  const SceneScale scale = scene_scale(AnyBody(cloud), kReach, Vec3{0, 0, 1});
+  const SceneScale scale = scene_scale(AnyBody(cloud), kToolReach, Vec3{0, 0, 1});
   EXPECT_NEAR(scale.noise, amplitude / std::sqrt(3.0), 0.15 * amplitude);
   EXPECT_NEAR(scale.smallest_radius(), 2 * scale.noise, 1e-12);
 }
@@ -58,16 +59,16 @@ TEST(SceneScale, TellsTheNoiseOfTheSensor) {
 TEST(SceneScale, LooksNearTheToolOnly) {
   // A plate stands half a metre in front of a wall; its points are closer to each other.
   const AnyBody cloud(testing::see(synthetic::make_scene("plate")));
-  EXPECT_NEAR(scene_scale(cloud, kReach, Vec3{0, 0, 1}).spacing, kPixel, 0.1 * kPixel);
-  EXPECT_GT(scene_scale(cloud, kReach, std::nullopt).spacing, 1.3 * kPixel);
+  EXPECT_NEAR(scene_scale(cloud, kToolReach, Vec3{0, 0, 1}).spacing, kPixel, 0.1 * kPixel);
+  EXPECT_GT(scene_scale(cloud, kToolReach, std::nullopt).spacing, 1.3 * kPixel);
 }
 
 TEST(SceneScale, SameBitsForAnyOrderAndThreads) {
   const Cloud cloud = testing::see(synthetic::make_scene("groove"));
-  const SceneScale once = scene_scale(AnyBody(cloud), kReach, std::nullopt);
+  const SceneScale once = scene_scale(AnyBody(cloud), kToolReach, std::nullopt);
   set_thread_count(3);
   const SceneScale again =
-      scene_scale(AnyBody(testing::permuted(testing::doubled(cloud))), kReach, std::nullopt);
+      scene_scale(AnyBody(testing::permuted(testing::doubled(cloud))), kToolReach, std::nullopt);
   set_thread_count(0);
   EXPECT_EQ(once.spacing, again.spacing);
   EXPECT_EQ(once.noise, again.noise);
@@ -81,7 +82,7 @@ TEST(SceneScale, RefusesAHandfulOfPoints) {
     cloud.positions[i].x = static_cast<float>(i);
   cloud.normals.assign(cloud.positions.size(), {0, 0, 1});
   cloud.radii.assign(cloud.positions.size(), 1);
-  EXPECT_THROW(scene_scale(AnyBody(cloud), kReach, std::nullopt), Error);
+  EXPECT_THROW(scene_scale(AnyBody(cloud), kToolReach, std::nullopt), Error);
 }
 
 TEST(SceneLevel, StopsAtTheSmallestSphereThatPointsResolve) {

@@ -24,7 +24,7 @@ namespace {
 using testing::generic_rotation;
 using testing::lattice_cube;
 
-constexpr double kEdge = 0.2;
+constexpr double kLatticeEdge = 0.2;
 
 double sum_of(const Result& r) {
   return r.volume_fraction + r.visibility->seen_free + r.visibility->unseen +
@@ -99,7 +99,7 @@ TEST(Visibility, IsThatOfTheToolsPlaces) {
 // A tool that nothing hides, in the middle of the image, is seen free or inside to the last bit.
 TEST(Visibility, LeavesNothingUnseenBeforeAWall) {
   const AnyBody wall(testing::see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 10, 2);
+  const ToolModel tool = lattice_cube(kLatticeEdge, 10, 2);
   ToolQuery query(tool, {});
   for (double z = 0.6; z < 1; z += 0.013) {
     const Result r = query.run(wall, {generic_rotation(), {0.01, -0.02, z}});
@@ -140,7 +140,7 @@ Cloud rough(const char* scene) {
 TEST(Visibility, AddsUpToOneWithTheSameBitsForAnyThreads) {
   for (const char* scene : {"wall", "groove", "plate", "block", "step"}) {
     const AnyBody cloud(rough(scene));
-    for (const ToolModel& tool : {lattice_cube(kEdge, 9, 2), lattice_cube(0.4, 20, 1)}) {
+    for (const ToolModel& tool : {lattice_cube(kLatticeEdge, 9, 2), lattice_cube(0.4, 20, 1)}) {
       QueryOptions solid;
       solid.shadows = Shadows::solid;
       ToolQuery near(tool, {}), all(tool, solid);
@@ -194,7 +194,7 @@ TEST(Visibility, OfFreeToolsIsThatOfTheirParts) {
 TEST(Visibility, IsOfOneCamera) {
   const Cloud seen = testing::wall_with_hole();
   const AnyBody image(seen), points(without_camera(seen));
-  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  const ToolModel tool = lattice_cube(kLatticeEdge, 6, 2);
   ToolQuery query(tool, {});
   const Pose pose{generic_rotation(), {0.3, 0, 1}};
   const Result alone = query.run(image, pose);
@@ -223,7 +223,7 @@ TEST(Collides, IsUnknownWhereTooMuchIsNotSeen) {
 // Of a tool 30 cm behind a wall nobody can know if it collides, and the answer says so.
 TEST(Collides, IsUnknownFarBehindAWall) {
   const AnyBody wall(testing::see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  const ToolModel tool = lattice_cube(kLatticeEdge, 6, 2);
   ToolQuery query(tool, {});
   const auto at = [&](double z) { return collides(query.run(wall, {{}, {0, 0, z}})); };
   EXPECT_EQ(at(0.8), Collides::no);
@@ -241,7 +241,7 @@ TEST(Collides, IsThatOfTheWholeQuery) {
     for (const Shadows shadows : {Shadows::near, Shadows::solid}) {
       QueryOptions options;
       options.shadows = shadows;
-      const ToolModel tool = lattice_cube(kEdge, 9, 2);
+      const ToolModel tool = lattice_cube(kLatticeEdge, 9, 2);
       ToolQuery whole(tool, options), early(tool, options);
       for (std::size_t s = 0; s < (shadows == Shadows::near ? scenes.size() : 1); ++s) {
         for (int k = 0; k < 30; ++k) {
@@ -262,7 +262,7 @@ TEST(Collides, IsThatOfTheWholeQuery) {
 
 TEST(Collides, RefusesALimitThatIsNoPart) {
   const AnyBody wall(testing::see(synthetic::make_scene("wall")));
-  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  const ToolModel tool = lattice_cube(kLatticeEdge, 6, 2);
   ToolQuery query(tool, {});
   for (const double limit : {-0.1, 1.1, std::nan("")})
     EXPECT_THROW(query.collides({&wall, 1}, {}, limit), Error) << limit;
