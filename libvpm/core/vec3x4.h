@@ -37,10 +37,10 @@ using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else
 }
 
 [[gnu::always_inline]] inline bool any(const Mask4& mask) {
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+  return mask_of(__builtin_convertvector(mask, Int4)) != 0;
 }
 [[gnu::always_inline]] inline bool all(const Mask4& mask) {
-  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+  return mask_of(__builtin_convertvector(mask, Int4)) == 0xF;
 }
 [[gnu::always_inline]] inline Mask4 negated(const Mask4& mask) {
   return ~mask;
