@@ -115,21 +115,23 @@ struct DepthSurface : DepthSampler {
     if (in_ball.side != Side::ambiguous || !(center.z - radius >= kSmallestLength))
       return in_ball.side;
     const AffineDepth plane = plane_of_middle(in_ball.pixels);
-    const AffineRange off = range_off(plane, in_ball);
     // On the ray of x, inverse depth times x.z is that of x and these.
     const Vec3 across{plane.per_u * k.fx, plane.per_v * k.fy,
                       plane.per_u * k.cx + plane.per_v * k.cy};
-    const auto reach = [&](double constant, double& middle) {
+    // Returns the greatest of that in the ball, for an end of 1, or the least, for -1. Both grow
+    // with what is left of inverse depth, since the ball lies before the camera.
+    const auto depths = [&](double constant, double end) {
       const Vec3 g = across + Vec3{0, 0, constant};
-      middle = dot(g, center);
-      return radius * norm(g);
+      return dot(g, center) + end * radius * norm(g);
     };
-    double middle = 0;
-    const double before = reach(off.high, middle);
-    if (middle + before < 1 - kRounding) return Side::free;
-    if (in_ball.leaves_image || !(in_ball.range.low > 0)) return in_ball.side;
-    const double after = reach(off.low, middle);
-    return middle - after > 1 + kRounding ? Side::behind : in_ball.side;
+    const bool may_be_behind = !in_ball.leaves_image && in_ball.range.low > 0;
+    // The pixel in the middle is one of those that the range is over.
+    if (depths(plane.rest, 1) >= 1 - kRounding &&
+        !(may_be_behind && depths(plane.rest, -1) > 1 + kRounding))
+      return in_ball.side;
+    const AffineRange off = range_off(plane, in_ball);
+    if (depths(off.high, 1) < 1 - kRounding) return Side::free;
+    return may_be_behind && depths(off.low, -1) > 1 + kRounding ? Side::behind : in_ball.side;
   }
 
   // Returns what is seen of all places in a classified ball.
@@ -266,24 +268,25 @@ struct DepthSurface : DepthSampler {
     return normalized_or_zero(sum);
   }
 
-  // Holds how inverse depth changes with the pixel on a plane, 1/m.
+  // Holds how inverse depth changes with the pixel on a plane, and what is left of it, 1/m.
   struct AffineDepth {
-    double per_u = 0, per_v = 0;
+    double per_u = 0, per_v = 0, rest = 0;
   };
   // Bounds what is left of inverse depth without that, 1/m.
   struct AffineRange {
     double low = HUGE_VAL, high = -HUGE_VAL;
   };
-  // Returns that of the plane at the pixel in the middle, or none where its normal tells little.
+  // Returns that of the plane at the pixel in the middle; no change where its normal tells little.
   VPM_HD AffineDepth plane_of_middle(const PixelRectangle& p) const {
     const std::int32_t u = (p.u0 + p.u1) / 2, v = (p.v0 + p.v1) / 2;
     const Vec3 n = widen(normals[v * width + u]);
     const double inverse = inverse_depth(u, v);
     const Vec3 ray{quotient(u - k.cx, k.fx), quotient(v - k.cy, k.fy), 1};
     const double along = -dot(n, ray);
-    if (!(along > kGrazingPlane)) return {};
+    if (!(along > kGrazingPlane)) return {0, 0, inverse};
     const double per_height = -quotient(inverse, along);
-    return {quotient(n.x * per_height, k.fx), quotient(n.y * per_height, k.fy)};
+    const double per_u = quotient(n.x * per_height, k.fx), per_v = quotient(n.y * per_height, k.fy);
+    return {per_u, per_v, inverse - per_u * u - per_v * v};
   }
   // Bounds inverse depth over a ball's pixels, and between them, without its part that is affine.
   VPM_HD AffineRange range_off(const AffineDepth& plane, const BallClass& in_ball) const {
