@@ -60,6 +60,19 @@ std::optional<Camera> PointCloud::camera() const {
   return cloud.sensor ? std::optional(cloud.sensor->camera) : std::nullopt;
 }
 
+PointCloud PointCloud::seen_from(const Pose& camera_to_world) const {
+  Cloud cloud = HandleAccess::held(*this);
+  if (!cloud.sensor) refuse("the cloud keeps no camera that could be elsewhere");
+  Pose& told = cloud.sensor->camera.to_world;
+  const Rotation turn = camera_to_world.rotation * transpose(told.rotation);
+  cloud.origin = camera_to_world.translation + turn * (cloud.origin - told.translation);
+  told = camera_to_world;
+  validate(cloud.sensor->camera, "the cloud");
+  for (std::vector<Vec3f>* const vectors : {&cloud.positions, &cloud.normals})
+    for (Vec3f& one : *vectors) one = narrow(turn * widen(one));
+  return handle_of(std::move(cloud));
+}
+
 Body::Body(const PointCloud& cloud, Denoising points)
     : body_(std::make_shared<const AnyBody>(HandleAccess::held(cloud), points)) {}
 

@@ -10,6 +10,7 @@
 #include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/setup/cameras_check.h"
 #include "libvpm/setup/cloud_checks.h"
+#include "libvpm/setup/registration.h"
 
 namespace vpm {
 namespace {
@@ -68,6 +69,10 @@ Remarks SetupCheck::remarks() const {
 
 std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images) {
   return check_cameras(depth_images_of(images));
+}
+
+Registration register_cameras(std::span<const Body> images) {
+  return register_images(depth_images_of(images));
 }
 
 }  // namespace vpm

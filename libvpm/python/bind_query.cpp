@@ -443,6 +443,37 @@ void bind_level_query(py::module_& module, const py::object& collides_kind) {
   bind_single_poses(query_class, collides_kind);
 }
 
+void bind_registration(py::module_& module) {
+  py::class_<Registration>(module, "Registration", "Where several cameras are by what they show.")
+      .def_property_readonly(
+          "camera_poses",
+          [](const Registration& found) {
+            py::list poses;
+            for (const Pose& pose : found.to_world) poses.append(matrix_of(pose));
+            return poses;
+          },
+          "Camera to world, a matrix (4, 4) for each image; PointCloud.seen_from() takes one.")
+      .def_readonly("before", &Registration::before,
+                    "By how much readings of one surface differed, m: robust deviation.")
+      .def_readonly("after", &Registration::after, "By how much they differ now, m.")
+      .def_readonly("motions", &Registration::motions,
+                    "Motions of the cameras against each other: six for each but one.")
+      .def_readonly("told", &Registration::told,
+                    "How many of them the images tell; the others stay.");
+  module.def(
+      "register_cameras",
+      [](const std::vector<Body>& images) {
+        const py::gil_scoped_release unlocked;
+        return register_cameras(images);
+      },
+      py::arg("images"),
+      "Moves cameras, in the mean not at all, until surfaces that two of them show agree, by no "
+      "more than the images tell. Returns a vpm.Registration.\n\nimages: depth images that "
+      "Body.of_cameras() is to take, whose cameras are wrong by millimetres and tenths of a "
+      "degree. Takes a core .1 s for four. Raises RefusedError for a camera that shares hardly a "
+      "surface with others. Thread-safe.");
+}
+
 void bind_setup_check(py::module_& module) {
   py::class_<Remark>(module, "Remark", "What is said of a setup that is probably wrong.")
       .def_readonly("is_warning", &Remark::is_warning, "True if it is likely not what was meant.")
@@ -502,6 +533,7 @@ void bind_query(py::module_& module) {
   bind_single_query(module, collides_kind);
   bind_level_query(module, collides_kind);
   bind_setup_check(module);
+  bind_registration(module);
 }
 
 }  // namespace vpm::python

@@ -121,6 +121,13 @@ void bind_cloud(py::module_& module) {
       .def_property_readonly(
           "has_camera", [](const PointCloud& cloud) { return cloud.camera().has_value(); },
           "True if the cloud is a depth image with its camera.")
+      .def(
+          "seen_from",
+          [](const PointCloud& cloud, const Numbers& camera_pose) {
+            return cloud.seen_from(pose_of(camera_pose));
+          },
+          py::arg("camera_pose"),
+          "Returns the cloud with its camera elsewhere. Raises RefusedError without a camera.")
       .def("__repr__", [](const PointCloud& cloud) {
         return py::str("<vpm.PointCloud: {} points{}>")
             .format(cloud.size(), cloud.camera() ? ", a depth image" : "");

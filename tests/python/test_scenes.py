@@ -67,6 +67,17 @@ def test_a_camera_that_contradicts_another_is_named():
         vpm.doubted_camera([left, vpm.Body(vpm.SolidBody(vpm.solid_of((CUBE, FACES))))])
 
 
+def test_cameras_that_are_wrong_by_little_are_moved_until_they_agree():
+    clouds = [vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K, camera_pose=[0, 0, z, 0, 0, 0, 1]) for z in (0, 0.006)]
+    found = vpm.register_cameras([vpm.Body(cloud) for cloud in clouds])
+    assert (found.told, found.motions) == (3, 6) and found.after < 1e-5 < found.before
+    assert [pose[2, 3] for pose in found.camera_poses] == pytest.approx([0.003, 0.003], abs=1e-5)
+    moved = [vpm.Body(cloud.seen_from(pose)) for cloud, pose in zip(clouds, found.camera_poses)]
+    assert vpm.register_cameras(moved).before < 1e-5
+    with pytest.raises(vpm.RefusedError, match="one camera"):
+        vpm.register_cameras(moved[:1])
+
+
 @pytest.fixture
 def held_cube():
     """Depth image of the cube, with its centre at 0.6 m, before a wall at about 1 m; and the cube's pose."""

@@ -1,5 +1,5 @@
 // Suite of several cameras around one scene: errors of one to four cameras, as they are and with
-// noise, holes and wrong poses; and the time of queries.
+// noise, holes and wrong poses, also after these were registered; and the time of queries.
 #include <time.h>
 
 #include <algorithm>
@@ -10,7 +10,9 @@
 #include <span>
 
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
+#include "libvpm/setup/registration.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/surface.h"
 #include "tools/bench/errors.h"
@@ -99,12 +101,17 @@ struct Condition {
   const char* name;
   bool has_noise = false, has_holes = false;
   double off = 0, turned = 0;  // m, degrees: by which each camera's pose is wrong
+  bool is_registered = false;  // cameras are moved until their images agree
 };
 constexpr Condition kConditions[] = {{"clean"},
                                      {"noise", true},
                                      {"holes", false, true},
                                      {"small", false, false, 0.001, 0.1},
-                                     {"large", false, false, 0.005, 0.5}};
+                                     {"large", false, false, 0.005, 0.5},
+                                     {"clean, registered", false, false, 0, 0, true},
+                                     {"noise, registered", true, false, 0, 0, true},
+                                     {"small, registered", false, false, 0.001, 0.1, true},
+                                     {"large, registered", false, false, 0.005, 0.5, true}};
 
 Vec3 any_direction(synthetic::NormalNumbers& numbers) {
   const double x = numbers.next(), y = numbers.next(), z = numbers.next();
@@ -127,9 +134,9 @@ void unset_patches(DepthImage& image, std::uint64_t seed) {
 }
 
 // Returns what the cameras deliver, each with the pose that is told of it.
-std::vector<DepthBody> images_of(const CameraScene& scene, const std::vector<Camera>& cameras,
-                                 const Condition& condition) {
-  std::vector<DepthBody> images;
+std::vector<CloudSensor> images_of(const CameraScene& scene, const std::vector<Camera>& cameras,
+                                   const Condition& condition) {
+  std::vector<CloudSensor> images;
   for (std::uint64_t k = 0; k < cameras.size(); ++k) {
     DepthImage image = condition.has_noise ? synthetic::render_with_kinect_noise(
                                                  *scene.surface, cameras[k], 100 + k)
@@ -141,15 +148,31 @@ std::vector<DepthBody> images_of(const CameraScene& scene, const std::vector<Cam
     told.to_world.rotation =
         rotation_from_vector(condition.turned * kDegree * any_direction(numbers)) *
         told.to_world.rotation;
-    images.emplace_back(make_cloud(image, told, {}));
+    images.push_back({told, std::move(image)});
   }
   return images;
 }
 
-AnyBody body_of(const std::vector<DepthBody>& images, std::size_t cameras) {
-  return cameras == 1
-             ? AnyBody(images.front())
-             : AnyBody(RigBody({images.begin(), images.begin() + std::ptrdiff_t(cameras)}));
+std::vector<DepthBody> bodies_of(std::span<const CloudSensor> images) {
+  std::vector<DepthBody> bodies;
+  for (const auto& [camera, image] : images) bodies.emplace_back(make_cloud(image, camera, {}));
+  return bodies;
+}
+
+// Moves cameras as they are registered; not those that share too little.
+void register_cameras(std::vector<CloudSensor>& images) {
+  try {
+    const Registration found = register_images(bodies_of(images));
+    for (std::size_t k = 0; k < images.size(); ++k) images[k].camera.to_world = found.to_world[k];
+  } catch (const Error& fault) {
+    if (fault.kind() != ErrorKind::refused) throw;
+  }
+}
+
+AnyBody body_of(std::vector<CloudSensor> images, std::size_t cameras, bool is_registered) {
+  images.resize(cameras);
+  if (is_registered) register_cameras(images);
+  return body_of_cameras(bodies_of(images));
 }
 
 // Returns the fraction of a tool that is inside the scene, roughly.
@@ -262,9 +285,9 @@ void measure(const CameraScene& scene, const std::vector<PackedSolid>& tools, in
   const std::vector<Camera> cameras = cameras_around(scene);
   const std::vector<WayIn> all_ways = ways_into(scene, cameras, tools, ways, poses);
   for (const Condition& condition : kConditions) {
-    const std::vector<DepthBody> images = images_of(scene, cameras, condition);
-    for (std::size_t count = 1; count <= kMostCameras; ++count) {
-      const AnyBody body = body_of(images, count);
+    const std::vector<CloudSensor> images = images_of(scene, cameras, condition);
+    for (std::size_t count = condition.is_registered ? 2 : 1; count <= kMostCameras; ++count) {
+      const AnyBody body = body_of(images, count, condition.is_registered);
       for (const WayIn& way_in : all_ways)
         measure(way_in, body, count, groups[{condition.name, count}]);
     }
@@ -292,7 +315,7 @@ nlohmann::json to_json(const std::string& condition, std::size_t count, const Gr
 
 std::string line_of(const std::string& condition, std::size_t count, const Group& group) {
   char line[160];
-  std::snprintf(line, sizeof line, "%-6s %zu  %6.3f %6.2f  %5.1f  %5.0f\n", condition.c_str(),
+  std::snprintf(line, sizeof line, "%-17s %zu  %6.3f %6.2f  %5.1f  %5.0f\n", condition.c_str(),
                 count, 100 * group.all.volume.mean(), 100 * group.all.volume_worst.worst(),
                 group.all.direction.mean(), spread_of(group.microseconds).median);
   return line;

@@ -37,6 +37,7 @@ struct Arguments {
   std::size_t contacts = 0;          // of each pose or pair; 0: none are told
   std::optional<double> fail_above;  // m^3; of an assembly in the cube of its unit
   std::vector<std::string> clouds;   // one, or depth images of several cameras
+  bool registers = false;            // these cameras are moved until their images agree
   std::string pose;
   std::vector<std::string> poses;  // one file, or one for each tool
   std::string measure = "refined", shadows = "near";

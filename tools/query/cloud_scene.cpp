@@ -7,6 +7,7 @@
 
 #include "tools/common/error_text.h"
 #include "tools/common/remarks.h"
+#include "tools/query/registration.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
@@ -47,13 +48,32 @@ std::vector<Body> bodies_of_clouds(const std::vector<NamedCloud>& clouds, Denois
   return bodies;
 }
 
+// Moves the cameras of clouds until their images agree. One alone, which a request has put in the
+// place of others, stays.
+void move_to_agree(const QuerySetup& setup, std::vector<NamedCloud>& clouds) {
+  if (setup.arguments.clouds.size() < 2)
+    refuse_usage("--register makes the images of cameras agree: give several --cloud");
+  if (clouds.size() < 2) return;
+  std::vector<std::string> names;
+  std::vector<Pose> told;
+  for (const auto& [name, cloud] : clouds) {
+    names.push_back(name);
+    told.push_back(cloud.camera()->to_world);
+  }
+  const std::vector<Pose> poses =
+      registered_poses(setup.program, names, told, bodies_of(clouds, setup.points));
+  for (std::size_t k = 0; k < clouds.size(); ++k)
+    clouds[k].cloud = clouds[k].cloud.seen_from(poses[k]);
+}
+
 }  // namespace
 
 CloudScene::CloudScene(QuerySetup& setup)
     : CloudScene(setup, read_clouds(setup.arguments.clouds)) {}
 
-CloudScene::CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds) : setup_(setup) {
+CloudScene::CloudScene(QuerySetup& setup, std::vector<NamedCloud> clouds) : setup_(setup) {
   check_cameras(clouds);
+  if (setup.arguments.registers) move_to_agree(setup, clouds);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<Body> images = bodies_of_clouds(clouds, setup.points);
   std::vector<Body> bodies = images;

@@ -29,11 +29,12 @@ struct NamedCloud {
 class CloudScene {
  public:
   // Reads and prepares the clouds, if there are any, and adds them to the view, if there is one.
-  // Says what the clouds' cameras, and the sizes of clouds and tools, let doubt. Throws
-  // Error(refused) for several clouds one of which keeps no camera.
+  // Moves their cameras first, if --register asks for it. Says what the clouds' cameras, and the
+  // sizes of clouds and tools, let doubt. Throws Error(refused) for several clouds one of which
+  // keeps no camera, and what register_cameras() throws.
   explicit CloudScene(QuerySetup& setup);
   // The same for clouds that were read.
-  CloudScene(QuerySetup& setup, const std::vector<NamedCloud>& clouds);
+  CloudScene(QuerySetup& setup, std::vector<NamedCloud> clouds);
 
   const Scene& scene() const { return *scene_; }
   // Returns the number of the cloud's points; 0 without a cloud.

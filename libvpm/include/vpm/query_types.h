@@ -71,8 +71,6 @@ struct Wrench {
 // the surface are nearer to each other than an eighth of the tool radius, and not where they are a
 // quarter apart, but for samples larger than a sixteenth, which reach further; a cell is never
 // divided between contacts.
-//
-// OverlapOptions (vpm/solid.h) ask for contacts of two solids, QueryOptions for those of a scene.
 struct Contact {
   // Place of a contact that sums patches of several bodies.
   static constexpr std::size_t kSeveralBodies = static_cast<std::size_t>(-1);

@@ -1,11 +1,9 @@
 // Robots as URDF describes them: links with their collision geometry, joints, and where links are.
-// Library vpm::solid, but for link_poses(), which is in vpm::vpm.
+// Library vpm::solid, but for link_poses(), which is in vpm::vpm. Functions are thread-safe.
 //
 //   const vpm::Robot robot = vpm::read_robot("arm.urdf", {.package_path = {"/opt/ros/share"}});
 //   const std::vector<double> values(robot.movable.size(), 0);
 //   const std::vector<vpm::Pose> poses = vpm::link_poses(robot, values);
-//
-// Functions are thread-safe.
 #pragma once
 
 #include <vpm/pose.h>

@@ -51,6 +51,8 @@ class VPM_API PointCloud {
   std::size_t size() const;
   // Returns the camera, if the cloud keeps its depth image.
   std::optional<Camera> camera() const;
+  // Returns it with its camera elsewhere. Throws Error(refused) without one, or for no pose.
+  PointCloud seen_from(const Pose& camera_to_world) const;
 
  private:
   friend HandleAccess;
@@ -73,15 +75,14 @@ class VPM_API Body {
   // that is not finite, not rigid or further than 2^100 m from the origin.
   explicit Body(const SolidBody& solid, const Pose& to_world = {});
 
-  // Makes one body of the depth images of several cameras, which may see the same things from
-  // different sides: what one camera clearly saw free is free, and readings of one surface are
-  // averaged within what the images disagree by, which they tell themselves. Behind what two
-  // cameras see from different sides all is inside, however deep. The order of images changes no
-  // bit, and one that is given twice counts once; one image alone is itself. Where a scene lists
-  // such images as bodies of their own, what several see counts several times. Takes a core 30 ms
-  // for four images of 300 000 pixels, most of it once for each image; those of a DepthStream on a
-  // device are prepared on the CPU again. Throws Error(invalid_argument) for none, more than 16, or
-  // a body that is no depth image; otherwise as the constructor.
+  // Makes one body of the depth images of several cameras, which may see the same things: what one
+  // camera clearly saw free is free, and readings of one surface are averaged within what the
+  // images disagree by, which they tell themselves. Behind what two cameras see from different
+  // sides all is inside, however deep. The order of images changes no bit, and one that is given
+  // twice counts once; one image alone is itself. As bodies of their own in a scene, what several
+  // see would count several times. Takes a core 30 ms for four images of 300 000 pixels, most of it
+  // once for each image; those of a DepthStream on a device are prepared on the CPU again. Throws
+  // Error(invalid_argument) for none, more than 16, or a body that is no depth image.
   static Body of_cameras(std::span<const Body> images);
 
   // Returns the number of points with a normal; waits for a depth image that is being prepared. A
@@ -149,10 +150,8 @@ struct RemovedSolid {
 // holes never closed, so what is there or behind is `unseen` (vpm/query_types.h), not free and no
 // contact. What was measured before the solid by more than the margin stays. A margin is what
 // timing and calibration leave: seconds that the image may be late times the speed of the solid's
-// fastest point, and the error of the camera's pose there. The camera's noise (kEdgeGate) comes on
-// top.
-//
-// A camera that is inside of a solid sees nothing else: leave such a solid out. Shares the solids.
+// fastest point, and the error of the camera's pose there; the camera's noise (kEdgeGate) comes on
+// top. A camera inside of a solid sees nothing else: leave such a solid out. Shares the solids.
 // Belongs to one thread at a time.
 class VPM_API SolidRemover {
  public:

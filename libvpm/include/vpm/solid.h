@@ -202,11 +202,9 @@ struct Overlap {
 };
 
 struct OverlapOptions {
-  bool with_force = true;  // false leaves the wrench 0 and takes less time
-  double stiffness = 1;    // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
-  // Contacts that are listed each by itself; all others are summed in one more. 0: none are found,
-  // which takes less time.
-  std::uint32_t contacts = 0;
+  bool with_force = true;      // false leaves the wrench 0 and takes less time
+  double stiffness = 1;        // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  std::uint32_t contacts = 0;  // listed each by itself; all others are summed in one. 0: none
 };
 
 // Measures two solids at many poses. Shares the bodies, so nothing dangles. Belongs to one thread

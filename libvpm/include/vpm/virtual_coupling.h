@@ -37,8 +37,7 @@ VPM_API double critical_mass(double stiffness, double damping);
 
 // Limits that a coupling's parameters imply.
 struct CouplingLimits {
-  // N/m; steps are stable for contacts softer than this.
-  double contact_stiffness = 0;
+  double contact_stiffness = 0;  // N/m; steps are stable for contacts softer than this
   // N s/m; the device must have this damping to be passive at this rate: stiffness / (2 rate) +
   // damping (Colgate, Schenkel 1997).
   double device_damping = 0;
@@ -54,8 +53,7 @@ struct CouplingEnergy {
   double stored = 0;      // energy of the tool's motion and of the spring
   double dissipated = 0;  // energy taken by damper and passivity controller
   double absorbed = 0;    // energy taken by the contact
-  // Energy lost by the implicit step; >= 0 except for rotations by large angles.
-  double lost = 0;
+  double lost = 0;        // to the implicit step; >= 0 except for rotations by large angles
 };
 
 // A copy goes its own way: it may be stepped ahead to see what would be.

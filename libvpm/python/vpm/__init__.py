@@ -26,6 +26,7 @@ from ._vpm import (
     OverlapQuery,
     PointCloud,
     Query,
+    Registration,
     Remark,
     RemovedSolid,
     Result,
@@ -48,17 +49,18 @@ from ._vpm import (
     device_name,
     doubted_camera,
     pack,
+    register_cameras,
     set_thread_count,
     stable_rate,
 )
 
 __all__ = [
     "ArgumentError", "Body", "Collides", "Contact", "DepthStream", "DeviceArray", "DeviceResults", "Error", "LevelQuery",
-    "Overlap", "OverlapQuery", "PointCloud", "Query", "RefusedError", "Remark", "RemovedSolid", "Result", "Results",
+    "Overlap", "OverlapQuery", "PointCloud", "Query", "RefusedError", "Registration", "Remark", "RemovedSolid", "Result", "Results",
     "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh", "SolidRemover", "SpherePacking", "Tool", "ToolLevel",
     "UnavailableError", "View", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
     "cuda_device_count", "device_name", "doubted_camera", "import_cloud", "import_depth", "make_tool", "overlap",
-    "pack", "set_thread_count", "solid_of", "stable_rate",
+    "pack", "register_cameras", "set_thread_count", "solid_of", "stable_rate",
 ]
 
 

@@ -22,6 +22,18 @@ $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.
 $ vpm-normals wall.png -o beyond.vpmc --intrinsics 60,60,31.5,23.5 --depth-scale 300 --quiet; vpm-query --tool cube.vpmg --cloud front.vpmc --cloud beyond.vpmc --cloud back.vpmc --pose 0,0,0.95,0,0,0,1 -o wrong.jsonl
 2> vpm-query: warning: beyond.vpmc: 100 % of what it and another camera know is solid to one and free to the other: is its vpm-normals --camera-pose from camera to world, in metres, and vpm-normals --depth-scale right?
 
+# Cameras that are wrong by little are moved until they agree, half way each, in any order; the wall tells nothing of motions along it.
+$ vpm-normals wall.png -o near.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0.006,0,0,0,1 --quiet && vpm-query --tool cube.vpmg --cloud front.vpmc --cloud near.vpmc --pose 0,0,0.95,0,0,0,1 --register -o moved.jsonl
+2> vpm-query: note: --register: the images disagree by 0.00 mm, and disagreed by 8.88 mm; they tell 3 of 6 motions of cameras against each other, and the others stay
+2> vpm-query: note: front.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to *,0.003000,* (glob)
+2> vpm-query: note: near.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to *,0.003000,* (glob)
+$ vpm-query --tool cube.vpmg --cloud near.vpmc --cloud front.vpmc --pose 0,0,0.95,0,0,0,1 --register --quiet | cmp - moved.jsonl; python3 -c "import json; print(round(json.load(open('moved.jsonl'))['volume_fraction'], 2))"
+0.24
+$ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --register; vpm-query --tool cube.vpmg --cloud front.vpmc --poses poses.txt --register
+2> vpm-query: error: --register: image 1 of the list shows hardly a surface that another one shows too, within 5 % of the depth: nothing tells where its camera is; leave it out, or calibrate its camera
+2> vpm-query: error: --register makes the images of cameras agree: give several --cloud
+[2]
+
 # Points without a camera join no others.
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud points.vpmc --poses poses.txt
