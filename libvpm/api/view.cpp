@@ -26,7 +26,8 @@ Cloud cloud_of(const DepthBody& body) {
   for (std::int32_t v = 0; v < surface.height; ++v) {
     for (std::int32_t u = 0; u < surface.width; ++u) {
       const double inverse = surface.measured_at(u, v);
-      cloud.sensor->depth.depth.push_back(inverse > 0 ? static_cast<float>(1 / inverse) : 0);
+      // What is not measured keeps its sign, by which removed pixels are known.
+      cloud.sensor->depth.depth.push_back(static_cast<float>(inverse > 0 ? 1 / inverse : inverse));
     }
   }
   return cloud;
@@ -111,7 +112,8 @@ void View::add_scene(const Scene& scene, std::span<const std::string> names) {
 }
 
 void View::set_frames(const std::string& name, std::function<PointCloud(std::size_t)> frame) {
-  impl().set_frames(name, std::move(frame));
+  impl().set_frames(
+      name, [frame = std::move(frame)](std::size_t number) { return std::vector{frame(number)}; });
 }
 
 void View::see_frame(std::optional<std::size_t> frame) {

@@ -2,7 +2,7 @@
 // what the camera has not seen.
 
 const COARSE_PIXELS = 12000, MOST_IMAGES_KEPT = 8;
-const SURFACE_COLOR = '#8fa9c4', POINT_COLOR = '#5c7fa6', UNSEEN_COLOR = '#3a3a44', CAMERA_COLOR = '#22303c';
+const SURFACE_COLOR = '#8fa9c4', POINT_COLOR = '#5c7fa6', UNSEEN_COLOR = '#3a3a44', CAMERA_COLOR = '#22303c', REMOVED_COLOR = '#cc79a7';
 
 // Makes the shapes of one image, each when it is first shown.
 class ImageShapes {
@@ -54,6 +54,14 @@ function frustumOf(image) {
   return new Float32Array(lines);
 }
 
+// Returns the places, on the face of that pyramid, of pixels that show a known solid and were removed.
+function removedOf(image) {
+  const [fx, fy, cx, cy] = image.intrinsics, z = 0.25 * image.median, places = [];
+  for (const k of image.removed ? decode(image.removed) : [])
+    places.push((k % image.width - cx) / fx * z, (Math.floor(k / image.width) - cy) / fy * z, z);
+  return new Float32Array(places);
+}
+
 // Draws the image that is shown at a step.
 class ImageScene {
   constructor(layer) {
@@ -66,10 +74,11 @@ class ImageScene {
     this.points = placed(new THREE.Points(undefined, surfaceMaterial({byNormal, color: POINT_COLOR})), 1);
     this.curtain = placed(new THREE.Mesh(undefined, solidMaterial(UNSEEN_COLOR, 0.35)), 3);
     this.frustum = lineSegments(new Float32Array(6), lineMaterial(CAMERA_COLOR, {width: 1.5}));
+    this.removed = placed(new THREE.Points(geometryOf(new Float32Array(0)), dotMaterial(REMOVED_COLOR, 2, true)), 6);
     const corners = geometryOf(new Float32Array(12), null, new Uint32Array([0, 1, 2, 2, 1, 3]));
     this.sheet = placed(new THREE.Mesh(corners, sheetMaterial()), 4);
     this.unseen = new THREE.Group().add(this.curtain, this.sheet);
-    this.moving = [this.surface, this.points, this.curtain, this.frustum];
+    this.moving = [this.surface, this.points, this.curtain, this.frustum, this.removed];
     for (const object of this.moving) object.matrixAutoUpdate = false;
   }
 
@@ -92,6 +101,7 @@ class ImageScene {
     this.shapes = this.shapesOf(image);
     this.toWorld = matrixOf(image.pose, 0);
     setSegments(this.frustum.geometry, frustumOf(image));
+    this.removed.geometry = geometryOf(removedOf(image));
     for (const object of this.moving) {
       object.matrix.copy(this.toWorld);
       object.matrixWorldNeedsUpdate = true;
@@ -123,6 +133,7 @@ class ImageScene {
 
 function imageLayers(layer) {
   const shown = new ImageScene(layer), ofStep = layer.of_step ? decode(layer.of_step) : null;
+  const of = layer.name.match(/( of .*)?$/)[0];
   const byNormal = layer.by === 'normal', look = color => byNormal ? {shape: 'normals'} : {color};
   const surface = {
     name: layer.name, type: 'surface', on: true, object: shown.surface, swatch: look(SURFACE_COLOR), shown, byNormal,
@@ -144,9 +155,12 @@ function imageLayers(layer) {
   };
   const points = {name: layer.name.replace('surface', 'points'), type: 'points', on: false, object: shown.points, swatch: look(POINT_COLOR)};
   const unseen = {
-    name: 'not seen by the camera', type: 'unseen', on: false, object: shown.unseen, swatch: {color: UNSEEN_COLOR},
+    name: 'not seen by the camera' + of, type: 'unseen', on: false, object: shown.unseen, swatch: {color: UNSEEN_COLOR},
     legend: [['hidden behind the surface', UNSEEN_COLOR], ['not measured', null, 'hatch'], ['seen free', '#bfe1f2']],
   };
-  const camera = {name: 'camera', type: 'camera', on: true, object: shown.frustum, swatch: {color: CAMERA_COLOR, shape: 'line'}};
-  return [surface, points, unseen, camera];
+  const camera = {name: 'camera' + of, type: 'camera', on: true, object: shown.frustum, swatch: {color: CAMERA_COLOR, shape: 'line'}};
+  if (!layer.images.some(image => image.removed)) return [surface, points, unseen, camera];
+  const removed = {name: 'removed from the image' + of, type: 'removed', on: true, object: shown.removed, swatch: {color: REMOVED_COLOR, shape: 'ball'}};
+  removed.atStep = () => { removed.count = shown.removed.geometry.attributes.position.count; };
+  return [surface, points, unseen, camera, removed];
 }

@@ -162,12 +162,14 @@ Json Page::image_of(const ImageView& view, std::uint32_t stride) {
   std::vector<std::uint16_t> steps;
   std::vector<Vec3f> normals;
   std::vector<std::uint8_t> reasons;
+  std::vector<std::uint32_t> removed;  // pixels that show a known solid, by their number
   const double step = std::max(range.high - range.low, 1e-30) / 65534;
   for (std::uint32_t v = 0; v < image.height; v += stride) {
     for (std::uint32_t u = 0; u < image.width; u += stride) {
       const std::size_t k = image.index(u, v);
       const double d = image.depth[k];
       const bool shown = is_measured(image.depth[k]) && d <= range.high;
+      if (is_removed(image.depth[k])) removed.push_back(static_cast<std::uint32_t>(steps.size()));
       steps.push_back(shown ? static_cast<std::uint16_t>(1 + std::lround((d - range.low) / step))
                             : 0);
       if (!view.normals.empty()) normals.push_back(view.normals[k]);
@@ -187,6 +189,7 @@ Json Page::image_of(const ImageView& view, std::uint32_t stride) {
             {"median", range.median},
             {"depth", packed(std::span<const std::uint16_t>(steps))}};
   if (!normals.empty()) json["normals"] = packed_normals(normals);
+  if (!removed.empty()) json["removed"] = packed(std::span<const std::uint32_t>(removed));
   if (!reasons.empty()) {
     std::vector<std::uint8_t> bits;
     append_bits(reasons, bits);

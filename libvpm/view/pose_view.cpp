@@ -135,7 +135,7 @@ void PoseView::add_facts(Page& page) const {
     page.add_fact("poses", "one in " + std::to_string(every_) + " of " + std::to_string(seen_));
 }
 
-std::vector<Camera> PoseView::add_scene(Page& page, const std::vector<Step>& steps) const {
+PoseView::Cameras PoseView::add_scene(Page& page, const std::vector<Step>& steps) const {
   for (const auto& [name, handle] : clouds_) {
     const std::string of = clouds_.size() > 1 ? " of " + name : "";
     if (handle.camera()) {
@@ -148,43 +148,50 @@ std::vector<Camera> PoseView::add_scene(Page& page, const std::vector<Step>& ste
   std::vector<std::vector<Pose>> poses_of_solids;
   for (const Step& step : steps) poses_of_solids.push_back(step.solids);
   solids_.add_to(page, poses_of_solids);
-  return frames_ ? add_frames(page, steps) : std::vector<Camera>();
+  return frames_ ? add_frames(page, steps) : Cameras();
 }
 
-// Reads the frames that the steps saw again, as many as a page holds, and adds them.
-std::vector<Camera> PoseView::add_frames(Page& page, const std::vector<Step>& steps) const {
+// Reads the frames that the steps saw again, as many as a page holds, and adds them, a layer for
+// each camera.
+PoseView::Cameras PoseView::add_frames(Page& page, const std::vector<Step>& steps) const {
   std::set<std::size_t> seen;
   for (const Step& step : steps)
     if (step.frame) seen.insert(*step.frame);
   std::vector<std::size_t> frames(seen.begin(), seen.end());
   const std::size_t every = (frames.size() + kMostFrames - 1) / kMostFrames;
   std::vector<std::size_t> shown;
-  std::vector<PointCloud> clouds;
+  std::vector<std::vector<PointCloud>> clouds;  // of each frame, of each camera
+  std::size_t pixels = 0;
   for (std::size_t k = 0; k < frames.size(); k += every) {
-    PointCloud cloud = frames_(frames[k]);
-    if (!cloud.camera()) {
-      page.add_points("measured points", HandleAccess::held(cloud));
-      page.add_note("The frames are clouds without a camera: the first one is shown.");
-      return {};
-    }
     shown.push_back(frames[k]);
-    clouds.push_back(std::move(cloud));
+    for (const PointCloud& cloud : clouds.emplace_back(frames_(frames[k]))) {
+      if (!cloud.camera()) {
+        page.add_points("measured points", HandleAccess::held(cloud));
+        page.add_note("The frames are clouds without a camera: the first one is shown.");
+        return {};
+      }
+      pixels += image_of(cloud).depth->depth.size();
+    }
   }
   if (clouds.empty()) return {};
-  std::vector<ImageView> images;
-  for (const PointCloud& cloud : clouds) images.push_back(image_of(cloud));
   std::vector<std::uint32_t> of_step;
-  std::vector<Camera> cameras;
+  Cameras cameras;
   for (const Step& step : steps) {
     const auto after = std::ranges::upper_bound(shown, step.frame.value_or(0));
     of_step.push_back(
         static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - shown.begin() - 1, 0)));
-    cameras.push_back(images[of_step.back()].camera);
+    std::vector<Camera>& now = cameras.emplace_back();
+    for (const PointCloud& cloud : clouds[of_step.back()]) now.push_back(*cloud.camera());
   }
   std::uint32_t stride = 1;
-  const std::size_t pixels = images.size() * images[0].depth->depth.size();
   while (pixels / stride / stride > kFramePixels) ++stride;
-  page.add_image("measured surface", images, of_step, false, stride);
+  const std::size_t count = clouds.front().size();
+  for (std::size_t camera = 0; camera < count; ++camera) {
+    std::vector<ImageView> images;
+    for (const std::vector<PointCloud>& frame : clouds) images.push_back(image_of(frame[camera]));
+    const std::string of = count > 1 ? " of camera " + std::to_string(camera) : "";
+    page.add_image("measured surface" + of, images, of_step, false, stride);
+  }
   if (every > 1)
     page.add_fact("frames shown",
                   std::to_string(shown.size()) + " of " + std::to_string(frames.size()));
@@ -313,7 +320,7 @@ std::size_t PoseView::add_tool(Page& page, const std::vector<Step>& steps, std::
 
 // Adds notes on a tool that no camera sees, and on poses at which nothing is touched.
 void PoseView::say_what_is_odd(Page& page, const std::vector<Step>& steps,
-                               const std::vector<Camera>& frame_cameras) const {
+                               const Cameras& frame_cameras) const {
   bool has_camera = !frame_cameras.empty(), is_seen = false, touches = false;
   for (const auto& [name, cloud] : clouds_) has_camera = has_camera || cloud.camera();
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -321,7 +328,10 @@ void PoseView::say_what_is_odd(Page& page, const std::vector<Step>& steps,
       const Answer& answer = steps[k].answers[t];
       const Vec3 center = answer.pose * model_of(t).center_of_mass;
       touches = touches || answer.result.volume > 0;
-      is_seen = is_seen || (!frame_cameras.empty() && sees(frame_cameras[k], center));
+      if (!frame_cameras.empty())
+        is_seen = is_seen || std::ranges::any_of(frame_cameras[k], [&](const Camera& camera) {
+                    return sees(camera, center);
+                  });
       for (const auto& [name, cloud] : clouds_)
         is_seen = is_seen || (cloud.camera() && sees(*cloud.camera(), center));
     }
@@ -358,8 +368,8 @@ Page PoseView::page() const {
   const bool is_joined = are_path(steps);
   for (std::size_t t = 0; t < tools_.size(); ++t)
     volumes.push_back(add_tool(page, steps, t, is_joined));
-  const std::vector<Camera> frame_cameras = add_scene(page, steps);
-  if (!frame_cameras.empty()) page.set_up(image_up(frame_cameras.front()));
+  const Cameras frame_cameras = add_scene(page, steps);
+  if (!frame_cameras.empty()) page.set_up(image_up(frame_cameras.front().front()));
   say_what_is_odd(page, steps, frame_cameras);
 
   std::vector<std::uint32_t> numbers;

@@ -23,7 +23,8 @@ namespace vpm::view {
 // is told.
 class PoseView {
  public:
-  using Frames = std::function<PointCloud(std::size_t)>;
+  // Returns what each camera shows in a frame, by its number: as many of all frames.
+  using Frames = std::function<std::vector<PointCloud>(std::size_t)>;
   struct Answer {
     Pose pose;
     Result result;
@@ -70,9 +71,10 @@ class PoseView {
   std::vector<Step> kept() const;
   bool are_path(const std::vector<Step>& steps) const;
   void add_facts(Page& page) const;
-  // Return the camera of the frame that each step sees; empty without frames that have one.
-  std::vector<Camera> add_scene(Page& page, const std::vector<Step>& steps) const;
-  std::vector<Camera> add_frames(Page& page, const std::vector<Step>& steps) const;
+  using Cameras = std::vector<std::vector<Camera>>;
+  // Return the cameras of the frame that each step sees; empty without frames that have one.
+  Cameras add_scene(Page& page, const std::vector<Step>& steps) const;
+  Cameras add_frames(Page& page, const std::vector<Step>& steps) const;
   // Return the number of the column of volumes.
   std::size_t add_tool(Page& page, const std::vector<Step>& steps, std::size_t tool,
                        bool is_joined) const;
@@ -82,7 +84,7 @@ class PoseView {
                     std::size_t body) const;
   std::string title() const;
   void say_what_is_odd(Page& page, const std::vector<Step>& steps,
-                       const std::vector<Camera>& frame_cameras) const;
+                       const Cameras& frame_cameras) const;
 
   std::string program_;
   std::vector<Tool> tools_;

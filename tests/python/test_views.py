@@ -81,6 +81,13 @@ def test_views_of_several_cameras_and_of_points(drawn, tool, cloud):
     assert data["title"] == "tool in camera 0 of body 0, camera 1 of body 0, body 1"
 
 
+def test_views_show_what_was_removed(drawn, tool):
+    removed = vpm.SolidRemover([vpm.SolidBody(tool, with_force=False)]).remove(
+        vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K), [[0, 0, 1, 0, 0, 0, 1]])
+    layer, = (layer for layer in shown_in(vpm.View(vpm.Query(tool), vpm.Scene(removed), [0, 0, 1, 0, 0, 0, 1]).html)["layers"] if layer["type"] == "image")
+    assert "removed" in layer["images"][0]
+
+
 def test_views_of_nothing_are_refused(drawn, tool, scene):
     query = vpm.Query(tool)
     with pytest.raises(vpm.RefusedError, match="no pose"):

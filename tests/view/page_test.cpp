@@ -76,6 +76,15 @@ TEST_F(PageTest, AFrameAThousandSpheresAndTwoHundredPosesAreBelowFiveMegabytes) 
   EXPECT_LT(page.html().size(), 5'000'000U);
 }
 
+TEST_F(PageTest, RemovedPixelsAreToldFromThoseNotMeasured) {
+  const DepthImage depth{3, 2, {1, 0, -0.0F, -0.0F, 2, 0}};
+  const ImageView image{&depth, {{1, 1, 1, 1}, 3, 2, {}}};
+  Page page("vpm-query", "removed");
+  page.add_image("surface", {&image, 1}, {});
+  EXPECT_EQ(Json::parse(data_of(page))["layers"][0]["images"][0]["removed"]["data"],
+            "AgAAAAMAAAA=");  // 2 and 3
+}
+
 TEST_F(PageTest, ImagesOfAMillionPixelsAreThinned) {
   DepthImage depth{1250, 800, std::vector<float>(1'000'000, 1.5F)};
   const ImageView image{&depth, {{1000, 1000, 625, 400}, 1250, 800, {}}};

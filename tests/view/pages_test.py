@@ -292,6 +292,25 @@ class Query(PageTest):
         for tool in (0, 1):
             self.assert_shows(page, lines[2 * 110 + tool], tool)
 
+    def test_every_camera_has_its_frustum_and_what_was_removed_from_its_image(self):
+        for name, at, removed in (("left", "0,0,0,0,0,0,1", ["--remove", "tool.off@0,0,0.95,0,0,0,1"]), ("right", "0.1,0,0,0,0,0,1", [])):
+            run("vpm-normals", "depth.png", "-o", f"{name}.vpmc", *HALF_INTRINSICS, "--camera-pose", at, *removed, "--quiet")
+        run("vpm-query", "--tool", "tool.vpmg", "--cloud", "left.vpmc", "--cloud", "right.vpmc", "--pose", "0,0,0.95,0,0,0,1", "-o", "two_cameras.jsonl",
+            "--view", "two_cameras.html", "--quiet")
+        page = self.open("two_cameras.html")
+        names = [layer["name"] for layer in page.report()["layers"]]
+        self.assertEqual([name for name in names if name.startswith("camera")], ["camera of left.vpmc", "camera of right.vpmc"])
+        self.assertEqual([name for name in names if name.startswith("removed")], ["removed from the image of left.vpmc"])
+        self.assertGreater(self.layer(page, "removed from the image of left.vpmc")["count"], 1000)
+        page.evaluate("vpm.setView('all')")
+        shown = scene(page)
+        for name in ("removed from the image of left.vpmc", "camera of left.vpmc", "camera of right.vpmc"):
+            page.evaluate(f"vpm.setLayer('{name}', false)")
+            without = scene(page)
+            self.assertGreater(numpy.mean(numpy.abs(without - shown).max(axis=2) > 0.05), 0.0003, name)
+            shown = without
+        self.assertEqual(page.report()["faults"], [])
+
     def test_frames_follow_the_steps(self):
         folder = FOLDER / "frames"
         folder.mkdir(exist_ok=True)

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "libvpm/api/handle_access.h"
-#include "libvpm/cloud/append.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/recording/frame_feed.h"
@@ -21,6 +20,7 @@
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/setup/pose_check.h"
 #include "libvpm/setup/size_check.h"
+#include "libvpm/view/pose_view.h"
 #include "tools/common/error_text.h"
 #include "tools/common/recorded_frames.h"
 #include "tools/common/remarks.h"
@@ -63,8 +63,8 @@ class Replay {
            Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
            std::optional<View>& view);
 
-  // Reads the frames of a scene of the page again.
-  PointCloud cloud_of(std::size_t number) const;
+  // Reads the frames of a scene of the page again, one of each camera.
+  std::vector<PointCloud> clouds_of(std::size_t number) const;
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -282,19 +282,28 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   }
 }
 
-PointCloud Replay::cloud_of(std::size_t number) const {
+std::vector<PointCloud> Replay::clouds_of(std::size_t number) const {
+  std::vector<std::size_t> frames{number};
   if (recording_.sources > 1) {
-    Cloud all;
-    for (const std::size_t frame : shown_[number]) {
-      const Cloud points = read_frame(recording_.frames[frame], import_).points;
-      if (all.positions.empty()) all.origin = points.origin;
-      append(points, all);
+    frames.clear();
+    for (std::size_t source = 0; source < recording_.sources; ++source) {
+      const auto is_of_it = [&](const RecordedFrame& frame) { return frame.source == source; };
+      const auto now = std::ranges::find_if(
+          shown_[number], [&](std::size_t frame) { return is_of_it(recording_.frames[frame]); });
+      // A camera that has shown nothing yet shows its first frame.
+      const auto first = std::ranges::find_if(recording_.frames, is_of_it);
+      frames.push_back(now != shown_[number].end()
+                           ? *now
+                           : static_cast<std::size_t>(first - recording_.frames.begin()));
     }
-    return HandleAccess::make<PointCloud>(std::move(all));
   }
-  ImportedScan scan = read_frame(recording_.frames[number], import_);
-  if (scan.image) scan.points.sensor = std::move(scan.image);
-  return HandleAccess::make<PointCloud>(std::move(scan.points));
+  std::vector<PointCloud> clouds;
+  for (const std::size_t frame : frames) {
+    ImportedScan scan = read_frame(recording_.frames[frame], import_);
+    if (scan.image) scan.points.sensor = std::move(scan.image);
+    clouds.push_back(HandleAccess::make<PointCloud>(std::move(scan.points)));
+  }
+  return clouds;
 }
 
 std::optional<std::size_t> Replay::number_of_scene() {
@@ -339,7 +348,8 @@ void Replay::tell(const LevelQuery& query, PoseCheck& check, Measure measure, bo
 void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<View>& view) {
-  if (view) view->set_frames(folders_, [this](std::size_t k) { return cloud_of(k); });
+  if (view)
+    view::PoseView::of(*view).set_frames(folders_, [this](std::size_t k) { return clouds_of(k); });
   if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();

@@ -27,6 +27,14 @@ $ vpm-normals left/depth/1000.066667.png -o left.vpmc --intrinsics 60,60,31.5,23
 $ vpm-query --tool cube.vpmg --cloud right.vpmc --cloud left.vpmc --pose 0,0,0.95,0,0,0,1 --quiet | cut -d, -f2- > afresh
 $ grep '1000.066667.png;1000.066667.png' both.jsonl | cut -d, -f4- | sort -u | cmp - afresh
 
+# The page has the surface and the frustum of each camera, and what --remove took from them; nothing is in the way of what was removed.
+$ echo '{"remove":["cube.off@0,0,1,0,0,0,1"]}' > still.jsonl; bash ask.sh --camera-poses left/groundtruth.txt --camera-poses right.txt --remove still.jsonl -o removed.jsonl --view removed.html --rate 30 2>&1 | grep remove
+vpm-query: note: --remove: 2176 pixels removed from 6 images, with a margin of 0 m
+$ python3 -c 'import json; print([[round(max(json.loads(l)[k] for l in open(f)), 3) + 0 for k in ("volume_fraction", "unseen")] for f in ("both.jsonl", "removed.jsonl")])'
+[[0.357, 0.0], [0.0, 1.0]]
+$ for f in both removed; do for w in '"type":"image"' '"removed":'; do grep -o $w $f.html | wc -l; done; done | xargs
+2 0 2 8
+
 # What tells nothing of one camera among several is refused.
 $ bash ask.sh --camera-poses right.txt
 2> vpm-query: error: give --camera-poses once for each --frames, in their order, or not at all
