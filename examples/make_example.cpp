@@ -5,6 +5,10 @@
 //   depth.png     640 x 480 pixels, 5000 units per metre, f = 525 px, Kinect noise
 //   poses.jsonl   one pose per line: [tx,ty,tz,qx,qy,qz,qw]
 //   truth.csv     pose,depth,volume,force_x,force_y,force_z: metres and cubic metres
+// And a cell with an arm over a part on a table, z upward, before three such cameras:
+//   link.off      the arm's last link, m, about its middle, which is .5 m above the world's origin
+//   left.png ...  320 x 240 pixels, 5000 units per metre, f = 262.5 px; left, right and back
+//   left.txt ...  where each camera is said to be: 3 mm and .2 degrees from where it is
 
 #include <cstdio>
 #include <iostream>
@@ -54,6 +58,41 @@ void make_example(const std::string& folder, const std::string& name) {
   file::write_all(folder + "/truth.csv", std::string_view(truth));
 }
 
+Pose looking_at(Vec3 from, Vec3 at) {
+  const Vec3 z = normalized_or_zero(at - from), x = normalized_or_zero(cross(z, {0, 0, 1}));
+  return {transpose(Rotation{x, cross(z, x), z}), from};
+}
+
+void make_cell(const std::string& folder) {
+  const Vec3 size{0.05, 0.05, 0.4};
+  const Pose link{{}, {0, 0, 0.5}};
+  synthetic::write_off(folder + "/link.off", synthetic::make_box(size.x, size.y, size.z));
+  const synthetic::SurfacePtr cell = synthetic::make_union(
+      {synthetic::make_inverted_ball({0, 0, 0.5}, 2.5),
+       synthetic::make_block({1.4, 1.4, 0.05}, {{}, {0, 0, -0.026}}),
+       synthetic::make_block({0.12, 0.09, 0.1}, {rotation_from_vector({0, 0, 0.5}), {0, 0, 0.05}}),
+       synthetic::make_block(size, link)});
+  const std::pair<const char*, double> places[] = {{"left", 0.4}, {"right", 2.5}, {"back", 4.6}};
+  for (const auto& [name, around] : places) {
+    Camera camera{{262.5, 262.5, 159.75, 119.75}, 320, 240, {}};
+    camera.to_world =
+        looking_at({0.8 * std::cos(around), 0.8 * std::sin(around), 0.7}, {0, 0, 0.15});
+    examples::write_depth_png(
+        folder + "/" + name + ".png",
+        synthetic::render_with_kinect_noise(*cell, camera, kNoiseSeed + std::uint64_t(name[0])),
+        kUnitsPerMetre);
+    const Vec3 turn{0.0035 * std::sin(9 * around), 0, 0.0035 * std::cos(9 * around)};
+    const Vec3 said = camera.to_world.translation +
+                      Vec3{0, 0.003 * std::cos(5 * around), 0.003 * std::sin(5 * around)};
+    const Quaternion q =
+        quaternion_from_rotation(rotation_from_vector(turn) * camera.to_world.rotation);
+    char line[256];
+    std::snprintf(line, sizeof line, "%.6f %.6f %.6f %.9f %.9f %.9f %.9f\n", said.x, said.y, said.z,
+                  q.x, q.y, q.z, q.w);
+    file::write_all(folder + "/" + name + ".txt", std::string_view(line));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,6 +102,7 @@ int main(int argc, char** argv) {
   }
   try {
     make_example(argv[1], argc == 3 ? argv[2] : "inverted-ball");
+    make_cell(argv[1]);
     return 0;
   } catch (const Error& fault) {
     std::cerr << "make-example: error: " << fault.what() << '\n';

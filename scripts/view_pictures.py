@@ -44,6 +44,12 @@ def make_pages(tools, folder):
     run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", "poses.jsonl", "-o", "results.jsonl",
         "--view", "query.html", "--quiet")
     make_scenes(run, pathlib.Path(folder))
+    clouds = []
+    for camera in ("left", "right", "back"):
+        run("vpm-normals", f"{camera}.png", "-o", f"{camera}.vpmc", "--intrinsics", "262.5,262.5,159.75,119.75", "--depth-scale", 5000, "--camera-pose",
+            f"{camera}.txt", "--remove", "link.off@0,0,0.5,0,0,0,1", "--remove-margin", 0.005, "--quiet")
+        clouds += ["--cloud", f"{camera}.vpmc"]
+    run("vpm-query", "--tool", "tool.vpmg", *clouds, "--register", "--pose", "0.03,0,0.11,0,0,0,1", "--quiet", "-o", "cameras.jsonl", "--view", "cameras.html")
 
 
 def ring_of_points():
@@ -82,6 +88,8 @@ PICTURES = {
     "scene-points": "vpm.setView('overview')",
     "scene-solids": "vpm.setView('overview')",
     "scene-several": "vpm.setView('contact')",
+    # Nearer, until the cameras fill the picture.
+    "cameras": "vpm.setView('all'); for (let k = 0; k < 22; ++k) document.querySelector('canvas').dispatchEvent(new WheelEvent('wheel', {deltaY: -1}))",
 }
 
 
