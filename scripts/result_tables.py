@@ -324,9 +324,12 @@ def reached(accuracy, timing, replay, packing, cuda):
 def cameras(report):
     of = {(r["condition"], r["cameras"]): r for r in report["results"]}
     names = {"clean": "clean", "noise": "Kinect noise", "holes": "holes of 3 to 12 pixels",
-             "small": "poses wrong by 1 mm and .1°", "large": "poses wrong by 5 mm and .5°"}
+             "small": "poses wrong by 1 mm and .1°", "large": "poses wrong by 5 mm and .5°",
+             "clean, registered": "clean, registered", "noise, registered": "Kinect noise, registered",
+             "small, registered": "1 mm and .1°, registered", "large, registered": "5 mm and .5°, registered"}
     counts = sorted({count for _, count in of})
-    rows = [[text] + [f"{percent(of[name, count]['volume_mean'])} / {percent(of[name, count]['volume_worst'], 2)}" for count in counts]
+    rows = [[text] + [f"{percent(of[name, count]['volume_mean'])} / {percent(of[name, count]['volume_worst'], 2)}" if (name, count) in of else ""
+                      for count in counts]
             + [f"{of[name, counts[-1]]['direction_mean_degrees']:.1f}"] for name, text in names.items()]
     times = [of["clean", count]["query_us"] for count in counts]
     rows.append(["time of a query, times that with one"] + [f"{time / times[0]:.1f}" for time in times] + [""])
