@@ -470,7 +470,7 @@ void bind_registration(py::module_& module) {
       "Moves cameras, in the mean not at all, until surfaces that two of them show agree, by no "
       "more than the images tell. Returns a vpm.Registration.\n\nimages: depth images that "
       "Body.of_cameras() is to take, whose cameras are wrong by millimetres and tenths of a "
-      "degree. Takes a core .1 s for four. Raises RefusedError for a camera that shares hardly a "
+      "degree. Takes a core .2 s for four. Raises RefusedError for a camera that shares hardly a "
       "surface with others. Thread-safe.");
 }
 

@@ -85,7 +85,7 @@ struct Registration {
 // not at all, until surfaces that two of them show agree (point to plane, Tukey's weights), by no
 // more than the images tell beside the error that is expected of each. What they do not tell, as
 // three of six motions along a plane, stays, and so does an error of all. The order of images
-// changes no bit. Takes a core .1 s for four. Thread-safe. Throws Error(refused) for a camera that
+// changes no bit. Takes a core .2 s for four. Thread-safe. Throws Error(refused) for a camera that
 // shares less than 60 readings with others, and for one alone; otherwise as doubted_camera().
 VPM_API Registration register_cameras(std::span<const Body> images);
 
