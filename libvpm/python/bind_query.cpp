@@ -458,7 +458,7 @@ void bind_registration(py::module_& module) {
       .def_readonly("after", &Registration::after, "By how much they differ now, m.")
       .def_readonly("motions", &Registration::motions,
                     "Motions of the cameras against each other: six for each but one.")
-      .def_readonly("told", &Registration::told,
+      .def_readonly("observable", &Registration::observable,
                     "How many of them the images tell; the others stay.");
   module.def(
       "register_cameras",

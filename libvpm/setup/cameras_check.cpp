@@ -14,7 +14,6 @@
 namespace vpm {
 namespace {
 
-constexpr double kPixels = 6000;    // about as many of an image are compared
 constexpr double kSame = 0.03;      // per metre of depth: readings further apart contradict
 constexpr double kBeside = 0.5;     // of that distance: free on all sides
 constexpr double kDoubtful = 0.25;  // part of what two cameras share that contradicts
@@ -45,10 +44,8 @@ struct Shared {
 ComparedCamera compared(const DepthBody& body) {
   ComparedCamera camera{body.surface(), body.to_world(), {}, 0};
   const DepthSurface& image = camera.image;
-  const double pixels = static_cast<double>(image.width) * image.height;
-  const int step = std::max(1, static_cast<int>(std::sqrt(pixels / kPixels)));
   std::vector<double> depths;
-  for_clear_pixels(image, step, [&](int, int, const Vec3& place) {
+  for_clear_pixels(image, step_of_comparison(image), [&](int, int, const Vec3& place) {
     camera.places.push_back(place);
     depths.push_back(place.z);
   });

@@ -17,41 +17,34 @@
 namespace vpm {
 namespace {
 
-constexpr double kPixels = 6000;      // about as many of an image are compared
-constexpr std::size_t kFew = 60;      // fewer readings that a camera shares tell nothing of it
-constexpr double kSame = 0.05;        // per depth: more is another surface
 constexpr double kSurelySame = 0.01;  // per depth: never less is
-constexpr double kAlike = 0.9;        // cosine of normals of one surface
-constexpr double kFrontal = 0.3;      // least cosine of incidence
-constexpr double kNormal = 1.48;      // median of magnitudes to standard deviation
 constexpr int kSteps = 12;
 constexpr std::size_t kMotions = 6;  // of a camera: along and about three axes
 
 // A camera in the frame of the first one: its place and motion there, and what it shows.
 struct MovedCamera {
   DepthSurface image;
-  Pose start, to_rig;          // as it is told, and as it is moved
-  std::vector<Vec3> places;    // that clear pixels show, the camera's frame
-  std::vector<Vec3> normals;   // their unit normals, the camera's frame
-  double depth = 0;            // m, the median of these; 0 if there are none
-  std::array<double, 6> by{};  // by which it is moved, along and about the rig's axes, in units of
-                               // what is expected of a camera
+  Pose start, to_rig;         // as it is told, and as it is moved
+  std::vector<Vec3> places;   // that clear pixels show, the camera's frame
+  std::vector<Vec3> normals;  // their unit normals, the camera's frame
+  double depth = 0;           // m, greatest median of what a camera shows: the same for all
+  std::array<double, 6> correction{};  // by which it is moved, along and about the rig's axes, in
+                                       // units of what is expected of a camera
 };
 
 MovedCamera moved_camera(const DepthBody& body, const Pose& rig) {
   const Pose to_rig = relative_to(rig, body.to_world());
   MovedCamera camera{body.surface(), to_rig, to_rig, {}, {}, 0, {}};
   const DepthSurface& image = camera.image;
-  const double pixels = static_cast<double>(image.width) * image.height;
-  const int step = std::max(1, static_cast<int>(std::sqrt(pixels / kPixels)));
   std::vector<double> depths;
-  for_clear_pixels(image, step, [&](std::int32_t u, std::int32_t v, const Vec3& at) {
-    const Vec3 normal = widen(image.normals[v * image.width + u]);
-    if (-dot(normal, at) <= kFrontal * norm(at)) return;
-    camera.places.push_back(at);
-    camera.normals.push_back(normal);
-    depths.push_back(at.z);
-  });
+  for_clear_pixels(image, step_of_comparison(image),
+                   [&](std::int32_t u, std::int32_t v, const Vec3& at) {
+                     const Vec3 normal = widen(image.normals[v * image.width + u]);
+                     if (!(-dot(normal, at) > kFrontal * norm(at))) return;
+                     camera.places.push_back(at);
+                     camera.normals.push_back(normal);
+                     depths.push_back(at.z);
+                   });
   if (!depths.empty()) camera.depth = median(depths);
   return camera;
 }
@@ -80,8 +73,8 @@ std::vector<Reading> readings_of(const std::vector<MovedCamera>& cameras, std::s
       const SurfaceSample seen = sees.image.sample(at);
       const double depth = std::max(shows.places[k].z, at.z);
       const double cosine = dot(seen.normal, to_other.rotation * shows.normals[k]);
-      if (!seen.known || std::fabs(seen.distance) > most * depth || cosine <= kAlike ||
-          -dot(seen.normal, at) <= kFrontal * norm(at))
+      if (!(seen.known && std::fabs(seen.distance) <= most * depth && cosine > kAlikeNormals &&
+            -dot(seen.normal, at) > kFrontal * norm(at)))
         continue;
       readings.push_back({own, other, shows.to_rig * shows.places[k],
                           sees.to_rig.rotation * seen.normal, depth, seen.distance, 1 - cosine});
@@ -108,7 +101,7 @@ double deviation_of(const std::vector<Reading>& readings, bool is_per_depth) {
   std::vector<double> apart;
   for (const Reading& reading : readings)
     apart.push_back(std::fabs(reading.apart) / (is_per_depth ? reading.depth : 1));
-  return apart.empty() ? 0 : kNormal * median(apart);
+  return apart.empty() ? 0 : kDeviationOfMedian * median(apart);
 }
 
 // Returns the robust variance of normals, rad^2, along each of two axes.
@@ -197,10 +190,11 @@ std::vector<double> diagonalise(std::size_t n, std::vector<double>& a) {
   return vectors;
 }
 
-// Moves the cameras by what the equations tell beside what is expected of cameras, along each
-// eigenvector of their information by itself; not along one of little information, of which `noise`
-// of normals, rad^2, makes up as much where surfaces slide on themselves. So the mean motion of
-// cameras is none, too. Returns the number of eigenvectors that are told, and the longest step.
+// Solves the equations together with what is expected of cameras, one unit for each motion, along
+// each eigenvector of the information by itself. Not observable is one whose information is no more
+// than normals of this variance, rad^2, give where surfaces slide on themselves: along it cameras
+// go back to where they started. So does a motion of all cameras together. Returns the number of
+// observable ones, and the longest step, in the unit of motions.
 std::pair<std::size_t, double> step_by(Equations equations, double expected, double noise,
                                        std::vector<MovedCamera>& cameras) {
   constexpr double kOfNoise = 4;
@@ -209,30 +203,30 @@ std::pair<std::size_t, double> step_by(Equations equations, double expected, dou
   double greatest = 0;
   for (std::size_t k = 0; k < n; ++k) greatest = std::max(greatest, equations.matrix[k * n + k]);
   std::vector<double> step(n, 0);
-  std::size_t told = 0;
+  std::size_t observable = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const double information = equations.matrix[k * n + k];
-    const bool is_told = information > std::max(1.0, kOfNoise * noise * greatest);
-    told += is_told;
+    const bool is_observable = information > std::max(1.0, kOfNoise * noise * greatest);
+    observable += is_observable;
     double pull = 0;
     for (std::size_t i = 0; i < n; ++i)
-      pull += vectors[i * n + k] *
-              ((is_told ? equations.pull[i] : 0) - cameras[i / kMotions].by[i % kMotions]);
-    const double by = is_told ? pull / (information + 1) : pull;
+      pull += vectors[i * n + k] * ((is_observable ? equations.pull[i] : 0) -
+                                    cameras[i / kMotions].correction[i % kMotions]);
+    const double by = is_observable ? pull / (information + 1) : pull;
     for (std::size_t i = 0; i < n; ++i) step[i] += by * vectors[i * n + k];
   }
   double longest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    cameras[i / kMotions].by[i % kMotions] += step[i];
+    cameras[i / kMotions].correction[i % kMotions] += step[i];
     longest = std::max(longest, std::fabs(step[i]));
   }
   for (MovedCamera& camera : cameras) {
-    const auto& by = camera.by;
+    const auto& by = camera.correction;
     camera.to_rig = {
         rotation_from_vector(expected * Vec3{by[3], by[4], by[5]}) * camera.start.rotation,
         camera.start.translation + expected * camera.depth * Vec3{by[0], by[1], by[2]}};
   }
-  return {told, longest};
+  return {observable, longest};
 }
 
 // Throws Error(refused) if a camera shares too little with all others; `names` are the places of
@@ -241,10 +235,11 @@ void check_shared(const std::vector<Reading>& readings, const std::vector<std::s
   std::vector<std::size_t> shared(names.size(), 0);
   for (const Reading& reading : readings) ++shared[reading.own], ++shared[reading.other];
   const auto least = std::ranges::min_element(shared);
-  if (*least >= kFew) return;
+  if (*least >= kFewReadings) return;
   const std::size_t camera = names[static_cast<std::size_t>(least - shared.begin())];
   refuse("image " + std::to_string(camera + 1) + " of the list shows hardly a surface that " +
-             "another one shows too, within " + std::to_string(static_cast<int>(100 * kSame)) +
+             "another one shows too, within " +
+             std::to_string(static_cast<int>(100 * kSameSurface)) +
              " % of the depth: nothing tells where its camera is",
          {}, "leave it out, or calibrate its camera");
 }
@@ -258,27 +253,30 @@ double finest_of(const std::vector<MovedCamera>& cameras) {
   return kOfPixel * width;
 }
 
-// Moves the cameras until the images agree. Returns what is told of that, without poses.
+// Moves the cameras until the images agree. Returns the rest of a Registration than the poses.
 Registration moved_to_agree(std::vector<MovedCamera>& cameras,
                             const std::vector<std::size_t>& names) {
-  constexpr double kOfDeviation = 1 / 1.5;  // an error of a camera shows by so much less
+  constexpr double kOfDeviation = 1 / 1.5;  // errors of two cameras add up to 1.5 times one's
   constexpr double kShort = 1e-3;           // in units of what is expected
   Registration found;
-  std::vector<Reading> readings = all_readings(cameras, kSame);
+  std::vector<Reading> readings = all_readings(cameras, kSameSurface);
   check_shared(readings, names);
+  const std::size_t first_count = readings.size();
   found.before = deviation_of(readings, false);
   const double finest = finest_of(cameras);
   double deviation = std::max(deviation_of(readings, true), finest);
   const double expected = kOfDeviation * deviation;
   for (int step = 0; step < kSteps; ++step) {
-    const auto [told, longest] = step_by(equations_of(readings, cameras, expected, deviation),
-                                         expected, noise_of_normals(readings), cameras);
-    found.told = told;
+    const auto [observable, longest] = step_by(equations_of(readings, cameras, expected, deviation),
+                                               expected, noise_of_normals(readings), cameras);
+    found.observable = observable;
     if (longest < kShort) break;
-    readings = all_readings(cameras, std::clamp(6 * deviation, kSurelySame, kSame));
+    readings = all_readings(cameras, std::clamp(6 * deviation, kSurelySame, kSameSurface));
     deviation = std::max(deviation_of(readings, true), finest);
   }
-  found.after = deviation_of(all_readings(cameras, kSame), false);
+  // Cameras that lost sight of each other agree in nothing.
+  const std::vector<Reading> now = all_readings(cameras, kSameSurface);
+  found.after = 2 * now.size() < first_count ? HUGE_VAL : deviation_of(now, false);
   return found;
 }
 
@@ -295,14 +293,19 @@ Registration register_images(std::span<const DepthBody> images) {
         static_cast<std::size_t>(std::ranges::find_if(different, is_it) - different.begin());
     names[place_of[i]] = i;
   }
-  if (different.size() < 2) refuse("there is one camera, which agrees with itself");
+  if (different.size() < 2)
+    refuse("all images are of one camera, which agrees with itself", {},
+           "give images of several cameras");
   const Pose rig = different.front().to_world();
   std::vector<MovedCamera> cameras;
   for (const DepthBody& body : different) cameras.push_back(moved_camera(body, rig));
+  double depth = 0;
+  for (const MovedCamera& camera : cameras) depth = std::max(depth, camera.depth);
+  for (MovedCamera& camera : cameras) camera.depth = depth;
   Registration found = moved_to_agree(cameras, names);
   found.motions = kMotions * (different.size() - 1);
   const bool is_better = found.after < found.before;
-  if (!is_better) found.after = found.before;
+  if (!is_better) found.after = found.before, found.observable = 0;
   for (const std::size_t place : place_of) {
     const MovedCamera& camera = cameras[place];
     const Pose& told = different[place].to_world();

@@ -101,6 +101,7 @@ class ImageScene {
     this.shapes = this.shapesOf(image);
     this.toWorld = matrixOf(image.pose, 0);
     setSegments(this.frustum.geometry, frustumOf(image));
+    this.removed.geometry.dispose();
     this.removed.geometry = geometryOf(removedOf(image));
     for (const object of this.moving) {
       object.matrix.copy(this.toWorld);

@@ -39,9 +39,9 @@ std::string make_png(std::uint32_t width, std::uint32_t height, int bits,
   return file;
 }
 
-testing::AssertionResult says(const std::string& message, const std::string& text) {
-  if (message.find(text) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "'" << message << "' does not say '" << text << "'";
+::testing::AssertionResult says(const std::string& message, const std::string& text) {
+  if (message.find(text) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "'" << message << "' does not say '" << text << "'";
 }
 
 void expect_damage_is_refused(const std::string& file, std::size_t samples,

@@ -31,6 +31,6 @@ void expect_damage_is_refused(const std::string& file, std::size_t samples,
                               const std::function<void(std::span<const std::byte>)>& parse);
 
 // True if the message contains the text.
-testing::AssertionResult says(const std::string& message, const std::string& text);
+::testing::AssertionResult says(const std::string& message, const std::string& text);
 
 }  // namespace vpm

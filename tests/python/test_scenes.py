@@ -70,7 +70,7 @@ def test_a_camera_that_contradicts_another_is_named():
 def test_cameras_that_are_wrong_by_little_are_moved_until_they_agree():
     clouds = [vpm.import_depth(np.full((60, 60), 1000, np.uint16), intrinsics=K, camera_pose=[0, 0, z, 0, 0, 0, 1]) for z in (0, 0.006)]
     found = vpm.register_cameras([vpm.Body(cloud) for cloud in clouds])
-    assert (found.told, found.motions) == (3, 6) and found.after < 1e-5 < found.before
+    assert (found.observable, found.motions) == (3, 6) and found.after < 1e-5 < found.before
     assert [pose[2, 3] for pose in found.camera_poses] == pytest.approx([0.003, 0.003], abs=1e-5)
     moved = [vpm.Body(cloud.seen_from(pose)) for cloud, pose in zip(clouds, found.camera_poses)]
     assert vpm.register_cameras(moved).before < 1e-5

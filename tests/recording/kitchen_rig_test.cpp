@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "libvpm/query/tool_query.h"
 #include "libvpm/recording/frame_feed.h"

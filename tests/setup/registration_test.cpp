@@ -84,7 +84,7 @@ TEST(Registration, FindsWhereCamerasAre) {
     EXPECT_LT(most_wrong(rig, found.to_world), 0.15 * most_wrong(rig, told_poses(rig)));
     EXPECT_LT(found.after, 0.05 * found.before);
     EXPECT_EQ(found.motions, 18U);
-    EXPECT_EQ(found.told, 18U);
+    EXPECT_EQ(found.observable, 18U);
     Vec3 mean;
     for (std::size_t k = 0; k < 4; ++k)
       mean += found.to_world[k].translation - rig.images[k].to_world().translation;
@@ -102,7 +102,7 @@ TEST(Registration, LeavesWhatAPlaneDoesNotTell) {
   const WrongRig rig = wrong_rig(*synthetic::make_wall({}, {0, 0, 1}), 2, 0.005, 0.0087);
   const Registration found = register_images(rig.images);
   EXPECT_EQ(found.motions, 6U);
-  EXPECT_EQ(found.told, 3U);
+  EXPECT_EQ(found.observable, 3U);
   EXPECT_LT(found.after, 0.01 * found.before);
   for (std::size_t k = 0; k < 2; ++k) {
     const Pose &now = found.to_world[k], &told = rig.images[k].to_world();

@@ -44,6 +44,8 @@ COMMANDS = [
                                     "shows no surface that another camera shows too: if they see one thing, is its vpm-normals --camera-pose from camera to world"))],
     (f"{TOOL} --poses poses.txt --register", "give several (--cloud)",
      f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0.001,0,0,0,1 -o out.vpmc --quiet; {TOOL} {{0}} out.vpmc --poses poses.txt --register"),
+    (f"{TOOL} --cloud wall.vpmc --poses poses.txt --register", "give images of several cameras",
+     f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0.001,0,0,0,1 -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt --register"),
     (f"vpm-normals wall.pgm {CAMERA} --camera-pose 10,0,0,0,0,0,1 -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt --register",
      "leave it out, or calibrate its camera", f"{TOOL} --poses poses.txt"),
     (f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 17) --poses poses.txt", "leave out those that show least",

@@ -160,7 +160,7 @@ std::vector<DepthBody> bodies_of(std::span<const CloudSensor> images) {
 }
 
 // Moves cameras as they are registered; not those that share too little.
-void register_cameras(std::vector<CloudSensor>& images) {
+void move_to_agree(std::vector<CloudSensor>& images) {
   try {
     const Registration found = register_images(bodies_of(images));
     for (std::size_t k = 0; k < images.size(); ++k) images[k].camera.to_world = found.to_world[k];
@@ -171,7 +171,7 @@ void register_cameras(std::vector<CloudSensor>& images) {
 
 AnyBody body_of(std::vector<CloudSensor> images, std::size_t cameras, bool is_registered) {
   images.resize(cameras);
-  if (is_registered) register_cameras(images);
+  if (is_registered) move_to_agree(images);
   return body_of_cameras(bodies_of(images));
 }
 

@@ -60,8 +60,11 @@ void move_to_agree(const QuerySetup& setup, std::vector<NamedCloud>& clouds) {
     names.push_back(name);
     told.push_back(cloud.camera()->to_world);
   }
-  const std::vector<Pose> poses =
-      registered_poses(setup.program, names, told, bodies_of(clouds, setup.points));
+  const std::vector<Body> images = bodies_of_clouds(clouds, setup.points);
+  if (const auto doubted = doubted_camera(images); doubted && doubted->remark.is_warning)
+    return setup.program.note(
+        "--register: no camera is moved, since one is far from where its pose tells");
+  const std::vector<Pose> poses = registered_poses(setup.program, names, told, images);
   for (std::size_t k = 0; k < clouds.size(); ++k)
     clouds[k].cloud = clouds[k].cloud.seen_from(poses[k]);
 }

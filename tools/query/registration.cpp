@@ -17,8 +17,9 @@ std::vector<Pose> registered_poses(const Program& program, const std::vector<std
   char text[300];
   std::snprintf(text, sizeof text,
                 "--register: the images disagree by %.2f mm, and disagreed by %.2f mm; they tell "
-                "%zu of %zu motions of cameras against each other, and the others stay",
-                kMillimetre * found.after, kMillimetre * found.before, found.told, found.motions);
+                "%zu of %zu motions of cameras against each other%s",
+                kMillimetre * found.after, kMillimetre * found.before, found.observable,
+                found.motions, found.observable < found.motions ? "; the others stay" : "");
   program.note(text);
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Pose& now = found.to_world[k];

@@ -23,7 +23,7 @@ class JobOrder {
   // the poses in that order. The jobs of one tool are in order, so all threads store their poses.
   void order(std::span<const BodyJob> jobs, std::size_t tools, Pose* poses) {
     places_.clear();
-    if (tools == 1) {
+    if (tools == 1 && !jobs.empty()) {
       parts_.assign(1, {0, static_cast<unsigned>(jobs.size())});
       constexpr std::size_t kPosesPerTask = 1024;
       parallel_for(jobs.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {

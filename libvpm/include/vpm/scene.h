@@ -51,7 +51,7 @@ class VPM_API PointCloud {
   std::size_t size() const;
   // Returns the camera, if the cloud keeps its depth image.
   std::optional<Camera> camera() const;
-  // Returns it with its camera elsewhere. Throws Error(refused) without one, or for no pose.
+  // Returns it as if its camera, which it must keep, had been at this pose: its points move along.
   PointCloud seen_from(const Pose& camera_to_world) const;
 
  private:
@@ -82,7 +82,7 @@ class VPM_API Body {
   // twice counts once; one image alone is itself. As bodies of their own in a scene, what several
   // see would count several times. Takes a core 30 ms for four images of 300 000 pixels, most of it
   // once for each image; those of a DepthStream on a device are prepared on the CPU again. Throws
-  // Error(invalid_argument) for none, more than 16, or a body that is no depth image.
+  // Error(invalid_argument) for none, more than 16, or one that is no depth image; else as above.
   static Body of_cameras(std::span<const Body> images);
 
   // Returns the number of points with a normal; waits for a depth image that is being prepared. A

@@ -1,7 +1,7 @@
 // Finds setups that are probably wrong: units, frames of poses and cameras, unseen places.
 //
-//   vpm::SetupCheck check(tool, cloud);                    // <vpm/tool.h>, <vpm/scene.h>
-//   check.see(pose, query.run(scene, pose));               // for each pose
+//   vpm::SetupCheck check(vpm::Tool::read("tool.vpmg"), vpm::PointCloud::read("scene.vpmc"));
+//   check.see(pose, query.run(scene, pose));               // for each pose, by <vpm/query.h>
 //   const vpm::Remarks remarks = check.remarks();          // to be shown, if there are any
 #pragma once
 
@@ -23,9 +23,8 @@ namespace vpm {
 // Belongs to one thread at a time. Keeps at most some hundred poses, evenly chosen.
 class VPM_API SetupCheck {
  public:
-  // Takes a millisecond or a few. `measure` is the one that is asked: what a camera has not seen is
-  // told for the refined one. Throws Error(invalid_argument) without a tool; otherwise as Body for
-  // a depth image that no query could use.
+  // Takes milliseconds. `measure` is the one that is asked: what a camera has not seen is told for
+  // the refined one. Throws Error(invalid_argument) without a tool; otherwise as Body.
   SetupCheck(const Tool& tool, const PointCloud& cloud, Measure measure = Measure::refined);
   SetupCheck(std::span<const Tool> tools, const PointCloud& cloud,
              Measure measure = Measure::refined);
@@ -33,8 +32,7 @@ class VPM_API SetupCheck {
   SetupCheck(SetupCheck&&) noexcept;
   SetupCheck& operator=(SetupCheck&&) noexcept;
 
-  // Notes the answer that a query of this cloud gave at a pose of a tool, which is named by its
-  // place. Throws Error(invalid_argument) if there is no such tool.
+  // Notes a query's answer at a pose of a tool. Throws Error(invalid_argument) without this one.
   void see(const Pose& pose, const Result& result, std::size_t tool = 0);
 
   // Returns a warning with its cure if something is probably wrong, otherwise nothing, in some
@@ -46,7 +44,9 @@ class VPM_API SetupCheck {
   // - a quarter or more of what a tool has behind the surface lies where the camera measured
   //   nothing, at half of the poses or more;
   // - no pose brought a tool into the camera's view, or near the surface: the remark names what
-  //   would (poses in metres, inverse poses, other axes); the third, at fewer poses.
+  //   would (poses in metres, inverse poses, other axes);
+  // - what a tool has behind the surface lies unmeasured, as above, at fewer than half of the
+  // poses.
   Remarks remarks() const;
 
  private:
@@ -69,24 +69,24 @@ struct DoubtedCamera {
 // than 30 times as far from each other one as they see; else one that shows no surface which
 // another shows too: with a warning if its pose is the identity and it hides nothing that others
 // show; else with a note, or nothing where no two share a surface and one hides what another shows,
-// as from opposite sides of a thing. Takes a core 20 ms for four images. Thread-safe. Throws
-// Error(invalid_argument) for a body that is no depth image.
+// as from opposite sides of a thing. Returns nothing where no camera is doubted. Takes a core 20 ms
+// for four images. Thread-safe. Throws Error(invalid_argument) for a body that is no depth image.
 VPM_API std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images);
 
 // Where several cameras are by what their images show.
 struct Registration {
   std::vector<Pose> to_world;    // of each image's camera; PointCloud::seen_from() takes it
   double before = 0, after = 0;  // m, robust deviation of readings of one surface, then and now
-  // Motions of cameras against each other, 6 for each but one, and how many the images tell.
-  std::size_t motions = 0, told = 0;
+  std::size_t motions = 0;       // of cameras against each other: 6 for each but one
+  std::size_t observable = 0;    // of these, how many the images determine
 };
 
 // Corrects poses that are wrong by millimetres and tenths of a degree: moves cameras, in the mean
 // not at all, until surfaces that two of them show agree (point to plane, Tukey's weights), by no
 // more than the images tell beside the error that is expected of each. What they do not tell, as
 // three of six motions along a plane, stays, and so does an error of all. The order of images
-// changes no bit. Takes a core .2 s for four. Thread-safe. Throws Error(refused) for a camera that
-// shares less than 60 readings with others, and for one alone; otherwise as doubted_camera().
+// changes no bit. Takes a core .2 s for four. Thread-safe. Throws Error(refused) for one camera
+// alone, and if one shows fewer than 60 of 6000 places that others show; or as doubted_camera().
 VPM_API Registration register_cameras(std::span<const Body> images);
 
 }  // namespace vpm

@@ -118,8 +118,9 @@ struct DepthSurface : DepthSampler {
     // On the ray of x, inverse depth times x.z is that of x and these.
     const Vec3 across{plane.per_u * k.fx, plane.per_v * k.fy,
                       plane.per_u * k.cx + plane.per_v * k.cy};
-    // Returns the greatest of that in the ball, for an end of 1, or the least, for -1. Both grow
-    // with what is left of inverse depth, since the ball lies before the camera.
+    // Returns the greatest (`end` 1) or the least (-1) product of depth and the surface's inverse
+    // depth on the ray, over the ball, for this rest of inverse depth. Both grow with the rest,
+    // since the ball lies before the camera.
     const auto depths = [&](double constant, double end) {
       const Vec3 g = across + Vec3{0, 0, constant};
       return dot(g, center) + end * radius * norm(g);
@@ -129,9 +130,9 @@ struct DepthSurface : DepthSampler {
     if (depths(plane.rest, 1) >= 1 - kRounding &&
         !(may_be_behind && depths(plane.rest, -1) > 1 + kRounding))
       return in_ball.side;
-    const AffineRange off = range_off(plane, in_ball);
-    if (depths(off.high, 1) < 1 - kRounding) return Side::free;
-    return may_be_behind && depths(off.low, -1) > 1 + kRounding ? Side::behind : in_ball.side;
+    const AffineRange rest = rest_range(plane, in_ball);
+    if (depths(rest.high, 1) < 1 - kRounding) return Side::free;
+    return may_be_behind && depths(rest.low, -1) > 1 + kRounding ? Side::behind : in_ball.side;
   }
 
   // Returns what is seen of all places in a classified ball.
@@ -289,7 +290,7 @@ struct DepthSurface : DepthSampler {
     return {per_u, per_v, inverse - per_u * u - per_v * v};
   }
   // Bounds inverse depth over a ball's pixels, and between them, without its part that is affine.
-  VPM_HD AffineRange range_off(const AffineDepth& plane, const BallClass& in_ball) const {
+  VPM_HD AffineRange rest_range(const AffineDepth& plane, const BallClass& in_ball) const {
     const PixelRectangle& p = in_ball.pixels;
     const std::int32_t wide = p.u1 - p.u0, tall = p.v1 - p.v0;
     const int least = exponent_of(static_cast<std::uint32_t>(wide > tall ? wide : tall)) - 2;

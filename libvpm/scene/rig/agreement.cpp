@@ -13,11 +13,7 @@ namespace {
 constexpr int kStep = 10;                         // pixels between those that are compared
 constexpr double kPerDeviation = 6;               // readings further apart are of two surfaces
 constexpr double kMostPixels = kSilhouetteReach;  // bounds the agreement
-constexpr double kSame = 0.05;                    // per depth: more is another surface
-constexpr double kAlike = 0.9;                    // cosine of normals of one surface
-constexpr double kFrontal = 0.3;                  // least cosine of incidence
 constexpr double kWellBefore = 0.03;              // per depth
-constexpr std::size_t kFew = 60;                  // fewer readings tell nothing
 
 // Holds a clear pixel's place and normal, the rig's frame, and its depth, m.
 struct ClearPixel {
@@ -44,8 +40,8 @@ void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& othe
   for (const ClearPixel& pixel : pixels) {
     const Vec3 at = other.from_rig * pixel.place;
     const SurfaceSample seen = other.image.sample(at);
-    if (!seen.known || std::fabs(seen.distance) >= kSame * pixel.depth ||
-        dot(other.to_rig.rotation * seen.normal, pixel.normal) <= kAlike ||
+    if (!seen.known || std::fabs(seen.distance) >= kSameSurface * pixel.depth ||
+        dot(other.to_rig.rotation * seen.normal, pixel.normal) <= kAlikeNormals ||
         -dot(seen.normal, at) <= kFrontal * norm(at))
       continue;
     deviations.emplace_back(pixel.depth, std::fabs(seen.distance) / pixel.depth);
@@ -55,15 +51,20 @@ void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& othe
 // Returns the robust deviation, per depth, of the nearer half of them: tools touch what is near,
 // and noise grows faster than depth.
 double deviation_of(std::vector<Deviation>& deviations) {
-  constexpr double kNormal = 1.48;  // median to standard deviation
   const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
   std::nth_element(deviations.begin(), middle, deviations.end());
   std::vector<double> near;
   for (auto one = deviations.begin(); one != middle; ++one) near.push_back(one->second);
-  return kNormal * median(near);
+  return kDeviationOfMedian * median(near);
 }
 
 }  // namespace
+
+std::int32_t step_of_comparison(const DepthSurface& image) {
+  constexpr double kPixels = 6000;
+  const double pixels = static_cast<double>(image.width) * image.height;
+  return std::max(1, static_cast<std::int32_t>(std::sqrt(pixels / kPixels)));
+}
 
 bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v) {
   constexpr std::int32_t kAcross = DepthSampler::kAcross;
@@ -76,7 +77,7 @@ bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v) {
   if (!(own > 0)) return false;
   for (const auto& [x, y] :
        {std::pair{u - kAcross, v}, {u + kAcross, v}, {u, v - kAcross}, {u, v + kAcross}}) {
-    if (dot(normal(u, v), normal(x, y)) < kAlike ||
+    if (dot(normal(u, v), normal(x, y)) < kAlikeNormals ||
         !(std::fabs(image.inverse_depth(x, y) - own) <= DepthSampler::kJump * own))
       return false;
   }
@@ -96,7 +97,7 @@ RigAgreement agreement_of(std::span<const RigCamera> cameras) {
       std::vector<Deviation> deviations;
       add_deviations(pixels[i], cameras[j], deviations);
       add_deviations(pixels[j], cameras[i], deviations);
-      if (deviations.size() <= kFew) continue;
+      if (deviations.size() <= kFewReadings) continue;
       const double deviation = deviation_of(deviations);
       agreement.of_pairs[i * count + j] = agreement.of_pairs[j * count + i] = deviation;
       largest = std::max(largest, deviation);

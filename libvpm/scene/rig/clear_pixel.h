@@ -1,6 +1,7 @@
 // Tells which pixels of several cameras are worth comparing with each other.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "libvpm/cloud/camera.h"
@@ -8,8 +9,18 @@
 
 namespace vpm {
 
+// Readings of two cameras are of one surface where these hold of them.
+inline constexpr double kSameSurface = 0.05;     // per depth: what is further apart is another one
+inline constexpr double kAlikeNormals = 0.9;     // least cosine between both cameras' normals
+inline constexpr double kFrontal = 0.3;          // least cosine of incidence
+inline constexpr std::size_t kFewReadings = 60;  // fewer tell nothing of two cameras
+inline constexpr double kDeviationOfMedian = 1.48;  // of magnitudes of normally distributed numbers
+
 // True if the pixels around one show its smooth surface.
 bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v);
+
+// Returns the step between pixels at which images are compared: that of about 6000.
+std::int32_t step_of_comparison(const DepthSurface& image);
 
 // Calls visit(u, v, place) for the clear ones of every `step`-th pixel of every `step`-th row, with
 // the place that the pixel shows, in the camera's frame.
