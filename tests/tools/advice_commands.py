@@ -46,7 +46,8 @@ COMMANDS = [
      f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0.001,0,0,0,1 -o out.vpmc --quiet; {TOOL} {{0}} out.vpmc --poses poses.txt --register"),
     (f"{TOOL} --cloud wall.vpmc --poses poses.txt --register", "give images of several cameras",
      f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0.001,0,0,0,1 -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt --register"),
-    (f"vpm-normals wall.pgm {CAMERA} --camera-pose 10,0,0,0,0,0,1 -o out.vpmc --quiet; {TOOL} --cloud out.vpmc --poses poses.txt --register",
+    (f"vpm-normals wall.pgm {CAMERA} --camera-pose 10,0,0,0,0,0,1 -o out.vpmc --quiet; vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0.001,0,0,0,1 -o near.vpmc --quiet; "
+     "vpm-query --tool small.vpmg --cloud near.vpmc --cloud out.vpmc --poses poses.txt --register",
      "leave it out, or calibrate its camera", f"{TOOL} --poses poses.txt"),
     (f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 17) --poses poses.txt", "leave out those that show least",
      f"{MANY}; {TOOL} $(seq -f '--cloud many%g.vpmc' 3) --poses poses.txt"),

@@ -34,7 +34,8 @@ NOT_BUILT = re.compile(r"is not read by this build|this build reads no|this buil
 UNTRIED = [
     ("says how it is, and asks for nothing", [
         "--camera-pose: its rotation is not exact and has been normalised", "--levels: the packing has",
-        "--register: the images disagree by %.2f mm, and disagreed by %.2f mm; they tell %zu of %zu motions of cameras against each other, and the others stay",
+        "--register: the images disagree by %.2f mm, and disagreed by %.2f mm; they tell %zu of %zu motions of cameras against each other%s",
+        "--register: no camera is moved, since one is far from where its pose tells",
         "is seen from --camera-pose", "no further sphere of at least --min-radius fits",
         "times the volume of the solid, so they overlap or leave it",
     ]),
