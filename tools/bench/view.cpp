@@ -1,6 +1,5 @@
 #include "tools/bench/view.h"
 
-#include "libvpm/cloud/append.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/synthetic/render.h"
 
@@ -22,6 +21,15 @@ std::vector<Camera> cameras_of(const synthetic::Scene& scene, CloudKind kind) {
   if (kind == CloudKind::points && scene.name == "plate")
     cameras.push_back(looking_at({0, 0, 2}, {0, 0, 1}, {0, 1, 0}));
   return cameras;
+}
+
+// Adds the points of a cloud to another, whose origin stays; what belongs to a sensor is left out.
+void append(const Cloud& part, Cloud& whole) {
+  const Vec3 offset = part.origin - whole.origin;
+  for (const Vec3f& place : part.positions)
+    whole.positions.push_back(narrow(widen(place) + offset));
+  whole.normals.insert(whole.normals.end(), part.normals.begin(), part.normals.end());
+  whole.radii.insert(whole.radii.end(), part.radii.begin(), part.radii.end());
 }
 
 }  // namespace
