@@ -5,7 +5,8 @@
 //   depth.png     640 x 480 pixels, 5000 units per metre, f = 525 px, Kinect noise
 //   poses.jsonl   one pose per line: [tx,ty,tz,qx,qy,qz,qw]
 //   truth.csv     pose,depth,volume,force_x,force_y,force_z: metres and cubic metres
-// And a cell with an arm over a part on a table, z upward, before three such cameras:
+// And of a robot's cell, the world's z upward, in which three cameras see an arm over a part on a
+// table:
 //   link.off      the arm's last link, m, about its middle, which is .5 m above the world's origin
 //   left.png ...  320 x 240 pixels, 5000 units per metre, f = 262.5 px; left, right and back
 //   left.txt ...  where each camera is said to be: 3 mm and .2 degrees from where it is
@@ -58,11 +59,6 @@ void make_example(const std::string& folder, const std::string& name) {
   file::write_all(folder + "/truth.csv", std::string_view(truth));
 }
 
-Pose looking_at(Vec3 from, Vec3 at) {
-  const Vec3 z = normalized_or_zero(at - from), x = normalized_or_zero(cross(z, {0, 0, 1}));
-  return {transpose(Rotation{x, cross(z, x), z}), from};
-}
-
 void make_cell(const std::string& folder) {
   const Vec3 size{0.05, 0.05, 0.4};
   const Pose link{{}, {0, 0, 0.5}};
@@ -75,8 +71,8 @@ void make_cell(const std::string& folder) {
   const std::pair<const char*, double> places[] = {{"left", 0.4}, {"right", 2.5}, {"back", 4.6}};
   for (const auto& [name, around] : places) {
     Camera camera{{262.5, 262.5, 159.75, 119.75}, 320, 240, {}};
-    camera.to_world =
-        looking_at({0.8 * std::cos(around), 0.8 * std::sin(around), 0.7}, {0, 0, 0.15});
+    camera.to_world = synthetic::looking_at({0.8 * std::cos(around), 0.8 * std::sin(around), 0.7},
+                                            {0, 0, 0.15}, {0, 0, 1});
     examples::write_depth_png(
         folder + "/" + name + ".png",
         synthetic::render_with_kinect_noise(*cell, camera, kNoiseSeed + std::uint64_t(name[0])),

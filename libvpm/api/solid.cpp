@@ -55,8 +55,7 @@ SolidMesh SolidMesh::from_triangles(std::span<const Vec3> vertices,
         refuse("vertex index " + std::to_string(vertex) + " is out of range; there are " +
                    std::to_string(vertices.size()) + " vertices",
                mesh.name);
-    mesh.corners.insert(mesh.corners.end(), triangle.begin(), triangle.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
+    mesh.add_triangle(triangle);
   }
   return handle_of(mesh, options);
 }

@@ -25,7 +25,7 @@ bool looks_like_off(std::string_view text);
 bool looks_like_om(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 
-// What to do about a file of a scene that cannot be read as it is.
+// Hints in errors: what to do in the program that wrote a file which cannot be read as it is.
 inline constexpr const char* kExport = "export it as STL or OBJ";
 inline constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
 

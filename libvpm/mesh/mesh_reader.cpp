@@ -79,6 +79,11 @@ void note_division(std::size_t vertices, RawMesh& mesh) {
                        " a fourth coordinate w other than 1, by which the others were divided");
 }
 
+void RawMesh::add_triangle(const Triangle& triangle) {
+  corners.insert(corners.end(), triangle.begin(), triangle.end());
+  polygon_end.push_back(corners.size());
+}
+
 void RawMesh::end_polygon() {
   const std::size_t begin = polygon_end.empty() ? 0 : polygon_end.back();
   if (corners.size() - begin >= 3) {

@@ -35,6 +35,7 @@ struct RawMesh {
   std::string doubt;  // defect of the file that may have opened the mesh; empty if there is none
 
   std::size_t polygon_count() const { return polygon_end.size(); }
+  void add_triangle(const Triangle& triangle);
   // Ends the polygon of the corners appended last, and drops it if they are fewer than three.
   void end_polygon();
 };

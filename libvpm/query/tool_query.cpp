@@ -329,7 +329,7 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
   for (const AnyBody& body : scene) {
     for_each_job(count, [&](std::size_t k) {
       const std::uint32_t tool = jobs[k].tool;
-      if (&body != scene.data()) sums[k].add(of_body[k]);
+      if (&body != scene.data()) sums[k].add(of_body[k]);  // of the body before
       placed[k] = {pose_in_body(body.to_world(), exact[k], queries[tool]->tool_.center_of_mass),
                    tool};
     });

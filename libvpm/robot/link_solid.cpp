@@ -115,10 +115,7 @@ SolidMesh link_solid(const Robot& robot, std::size_t number, RoundShape round,
   RawMesh mesh;
   mesh.name = "link '" + link.name + "'";
   mesh.vertices = std::move(all.vertices);
-  for (const Triangle& triangle : all.triangles) {
-    mesh.corners.insert(mesh.corners.end(), triangle.begin(), triangle.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
-  }
+  for (const Triangle& triangle : all.triangles) mesh.add_triangle(triangle);
   CheckedSolid checked = make_solid(mesh, {.scale = 1});
   notes.insert(notes.end(), checked.notes.begin(), checked.notes.end());
   checked.notes = std::move(notes);

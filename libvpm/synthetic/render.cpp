@@ -123,6 +123,11 @@ double NormalNumbers::next() {
   }
 }
 
+Pose looking_at(Vec3 eye, Vec3 target, Vec3 up) {
+  const Vec3 z = normalized_or_zero(target - eye), x = normalized_or_zero(cross(z, up));
+  return {transpose(Rotation{x, cross(z, x), z}), eye};
+}
+
 DepthImage render(const Surface& surface, const Camera& camera) {
   return render_pixels(surface, camera, [](RayCaster& rays, std::size_t u, std::size_t v) {
     return static_cast<float>(

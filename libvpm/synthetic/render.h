@@ -14,6 +14,10 @@ namespace vpm::synthetic {
 // class; principal point in the middle, at the world's origin looking along +z.
 Camera default_camera();
 
+// Returns the pose, camera to world, of a camera at `eye` whose optical axis leads through
+// `target`, m; `up`, of any length but not along that axis, points up in its image.
+Pose looking_at(Vec3 eye, Vec3 target, Vec3 up);
+
 // Intersects rays of a camera with a surface. depth() returns the depth, m, at image position (u,
 // v), pixels, where the ray first enters the obstacle. Surfaces are one-sided: a camera behind one
 // looks through it, e.g. into an inverted ball from outside.

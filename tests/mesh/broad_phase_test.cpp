@@ -168,10 +168,7 @@ RawMesh raw(const Solid& solid) {
   RawMesh mesh;
   mesh.name = "parts.obj";
   mesh.vertices = solid.vertices;
-  for (const Triangle& t : solid.triangles) {
-    mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
-  }
+  for (const Triangle& t : solid.triangles) mesh.add_triangle(t);
   return mesh;
 }
 

@@ -120,10 +120,7 @@ inline RawMesh raw(const Solid& solid) {
   mesh.format = MeshFormat::off;
   mesh.name = "test";
   mesh.vertices = solid.vertices;
-  for (const Triangle& t : solid.triangles) {
-    mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-    mesh.polygon_end.push_back(mesh.corners.size());
-  }
+  for (const Triangle& t : solid.triangles) mesh.add_triangle(t);
   return mesh;
 }
 

@@ -13,9 +13,7 @@ namespace vpm::testing {
 
 // Returns the pose, camera to world, of a camera that looks at the origin from a place.
 inline Pose looking_at_origin(Vec3 from) {
-  const Vec3 z = normalized_or_zero(-from);
-  const Vec3 x = normalized_or_zero(cross(z, {0.1, 0.2, 1})), y = cross(z, x);
-  return {transpose(Rotation{x, y, z}), from};
+  return synthetic::looking_at(from, {}, {0.1, 0.2, 1});
 }
 
 // Returns cameras about .9 m from the origin: four around it above and below, then one above, one

@@ -159,7 +159,8 @@ std::vector<DepthBody> bodies_of(std::span<const CloudSensor> images) {
   return bodies;
 }
 
-// Moves cameras as they are registered; not those that share too little.
+// Moves cameras until their images agree, as --register does. Where they share too little for that,
+// they stay.
 void move_to_agree(std::vector<CloudSensor>& images) {
   try {
     const Registration found = register_images(bodies_of(images));

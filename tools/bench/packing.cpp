@@ -371,10 +371,7 @@ class Packings {
     RawMesh mesh;
     mesh.name = "torus knot";
     mesh.vertices = solid.vertices;
-    for (const Triangle& t : solid.triangles) {
-      mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-      mesh.polygon_end.push_back(mesh.corners.size());
-    }
+    for (const Triangle& t : solid.triangles) mesh.add_triangle(t);
     return mesh;
   }
 

@@ -6,20 +6,18 @@
 namespace vpm::bench {
 namespace {
 
-// Returns a camera at `eye`, upright, with the optical axis through `target`.
-Camera looking_at(Vec3 eye, Vec3 target, Vec3 down) {
-  const Vec3 z = normalized_or_zero(target - eye), x = normalized_or_zero(cross(down, z));
+// Returns a camera at `eye` that looks at the middle of the scenes.
+Camera camera_at(Vec3 eye) {
   Camera camera = synthetic::default_camera();
-  camera.to_world = {transpose({x, cross(z, x), z}), eye};
+  camera.to_world = synthetic::looking_at(eye, {0, 0, 1}, {0, -1, 0});
   return camera;
 }
 
 std::vector<Camera> cameras_of(const synthetic::Scene& scene, CloudKind kind) {
   std::vector<Camera> cameras{scene.camera};
   if (kind == CloudKind::points && scene.name == "step")
-    cameras.push_back(looking_at({0.6, 0, 0.25}, {0, 0, 1}, {0, 1, 0}));
-  if (kind == CloudKind::points && scene.name == "plate")
-    cameras.push_back(looking_at({0, 0, 2}, {0, 0, 1}, {0, 1, 0}));
+    cameras.push_back(camera_at({0.6, 0, 0.25}));
+  if (kind == CloudKind::points && scene.name == "plate") cameras.push_back(camera_at({0, 0, 2}));
   return cameras;
 }
 

@@ -34,7 +34,8 @@ struct RigReading {
 // Reads an image, and its silhouettes. All members are functions of one camera and a place x, in
 // the rig's frame.
 struct RigReader {
-  // Reads what an image tells of a place, but for the weight.
+  // Reads what a camera's image tells of a place. The weight, which few readings need, is left to
+  // weigh().
   template <class Place>
   [[gnu::always_inline]] static VPM_HD void read(const RigCamera& camera, const Place& x,
                                                  RigReading<RealOf<Place>>& reading) {
@@ -84,8 +85,8 @@ struct RigReader {
   // A silhouette's direction is not taken where it has less than this part of the offset.
   static constexpr double kCornerCosine = 0.7;
 
-  // Holds the nearest silhouette pixels of places, and how far the places are from them in the
-  // image, in widths of a pixel.
+  // Holds the silhouette pixel that is nearest to a place in the image, or those of four places,
+  // and how far the place is from it, in widths of a pixel.
   template <class Real>
   struct Beside {
     IntOf<Real> index;        // of the silhouette's pixels

@@ -21,8 +21,8 @@ struct RigSampler {
   static constexpr int kMostCameras = 16;
 
   const RigCamera* cameras = nullptr;
-  // Distances per depth of the place, m/m (RigAgreement), within which readings of cameras i and j,
-  // at i * count + j, may be of one surface; a camera's own, i = j, is the width of its pixels.
+  // At i * count + j: how far readings of cameras i and j may be apart and still be of one surface,
+  // in parts of the place's depth (RigAgreement); for i = j the width of the camera's pixels.
   const double* agreement = nullptr;
   std::int32_t count = 0;
   double most_agreement = 0;  // the greatest of these
@@ -233,8 +233,8 @@ struct RigSampler {
 
   // Bounds how far a place is from what each camera has not seen free: no further than the nearest
   // surface that another camera shows, but for half a pixel of that, unless this one sees free
-  // space there too. Without this a camera that looks along a face would tell the distance to what
-  // is beyond the face, and that be the greatest.
+  // space there too. Otherwise a camera that looks along a face would tell how far it is to what
+  // lies beyond the face, and as the greatest distance that would count.
   template <class Place>
   [[gnu::always_inline]] VPM_HD void bound_free_distances(const Place& x,
                                                           const Nearest<RealOf<Place>>& nearest,

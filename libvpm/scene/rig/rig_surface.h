@@ -1,5 +1,5 @@
-// Defines the surface that several cameras see together, and classifies balls by it: by the
-// cameras that tell of places in them. README.md has the reasons.
+// Defines the surface that several cameras see together, and classifies balls by it, of which each
+// camera tells a part. README.md has the reasons.
 #pragma once
 
 #include "libvpm/scene/mean_plane.h"
