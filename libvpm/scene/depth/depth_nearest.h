@@ -204,7 +204,7 @@ template <class Place>
             u = pixel - v * image.width;
   Search search(image, x, on_surface, Search::neighbors_of(image, u, v));
   while (any(search.goes_on())) {
-    typename Search::Neighbors beside;
+    typename Search::Neighbors beside{};
     const auto also = [&](const Int& at_u, const Int& at_v) __attribute__((always_inline)) {
       beside = Search::neighbors_of(image, at_u, at_v);
     };
