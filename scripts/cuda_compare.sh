@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # cuda_compare.sh BEFORE AFTER OUT.json TOOL.vpmg LEVELS CLOUD.vpmc ...: times two builds on an NVIDIA device, side by side.
-# Exit code 1 if they answer a path's poses differently.
+# Exit code 1 if they answer a path's poses differently: each field that BEFORE writes must be AFTER's too.
 #
 # BEFORE and AFTER are made by scripts/bundle.sh of control-loop and vpm-query; LEVELS are like 1000,17000. For each cloud
-# and level, the two builds take turns in ROUNDS (5) rounds: ten thousand queries of one tool, ten thousand with eight
-# tools and clouds in turn so that caches do not help, and a hundred thousand poses in batches of 16384. Reports the
-# medians of the rounds and AFTER's time over BEFORE's, with the range of that ratio over the rounds.
+# and level, the two builds take turns in ROUNDS (5) rounds, in which either begins: ten thousand queries of one tool, ten
+# thousand with eight tools and clouds in turn so that caches do not help, and a hundred thousand poses in batches of
+# 16384. Reports the medians of the rounds and AFTER's time over BEFORE's, with the range of that ratio over the rounds.
 set -euo pipefail
 before=$1 after=$2 out=$3 tool=$4 levels=$5
 shift 5
@@ -13,8 +13,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failed=0
 
-row() {  # NAME [option=value ...]: times a row with both builds
-  for build in before after; do
+row() {  # NAME option=value ...: times a row with both builds, in odd rounds the other one first
+  local order="before after"
+  ((round % 2 == 0)) || order="after before"
+  for build in $order; do
     local folder=${!build}
     "$folder/bin/control-loop" "$tool" "$cloud" device=cuda level="$level" "${@:2}" json="$work/$build-$1.json" >/dev/null
   done
@@ -26,7 +28,12 @@ answers_alike() {  # compares the answers of both builds to the poses of one pat
     "$folder/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet --force --level "$level" --device cuda \
       --poses "$work/poses.jsonl" -o "$work/$build.jsonl"
   done
-  cmp "$work/before.jsonl" "$work/after.jsonl"
+  python3 - "$work/before.jsonl" "$work/after.jsonl" <<'PYTHON'
+import json, sys
+before, after = ([json.loads(line) for line in open(path)] for path in sys.argv[1:])
+alike = len(before) == len(after) and all(a.get(key) == b[key] for b, a in zip(before, after) for key in b)
+sys.exit(not (before and alike))
+PYTHON
 }
 
 for cloud in "$@"; do
@@ -51,7 +58,7 @@ for path in sorted(glob.glob(f"{work}/after-*.json")):
     for build in ("before", "after"):
         with open(path.replace("/after-", f"/{build}-")) as file:
             rows[name][build].append(json.load(file))
-report = {"command": "scripts/cuda_compare.sh", "device": smi.stdout.strip(), "same_bytes": failed == "0", "rows": []}
+report = {"command": "scripts/cuda_compare.sh", "device": smi.stdout.strip(), "same_answers": failed == "0", "rows": []}
 for name, builds in rows.items():
     figures = {}
     # A batch is told by its poses a second, whose ratio is turned round: a larger one is slower, as with times.
@@ -66,6 +73,6 @@ for name, builds in rows.items():
     print(f"{name:28} " + "; ".join(told))
 with open(out, "w") as file:
     json.dump(report, file, indent=2)
-print(f"{report['device']}: the answers are {'the same bytes' if report['same_bytes'] else 'NOT the same'}")
+print(f"{report['device']}: the answers are {'the same' if report['same_answers'] else 'NOT the same'}")
 PYTHON
 exit $failed
