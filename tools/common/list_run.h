@@ -1,5 +1,5 @@
-// Runs a program once for each input of a list, in processes of their own: whatever happens to one
-// of them, the others have their results.
+// Runs a program once for each input of a list, in processes that take one after the other
+// (list_worker.h): whatever happens to an input, the others have their results.
 #pragma once
 
 #include "tools/common/list_entries.h"

@@ -18,6 +18,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
 #include "tools/common/list_run.h"
+#include "tools/common/list_worker.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
 #include "tools/common/remarks.h"
@@ -209,10 +210,8 @@ nlohmann::json provenance_of(const Program& program, const ImportOptions& option
           {"input_hash", file::content_hash({bytes})}};
 }
 
-}  // namespace vpm::tools
-
-int main(int argc, char** argv) {
-  using namespace vpm::tools;
+// Does what the command line, or a configuration, says. Returns the exit status.
+int run_program(int argc, char** argv) {
   Program program("vpm-normals",
                   "Make a cloud with normals from a depth image or another program's cloud");
   Arguments arguments;
@@ -227,4 +226,10 @@ int main(int argc, char** argv) {
   return program.run(argc, argv, [&] {
     if (!run_list(program, list, {"depth", ".vpmc"})) run(program, arguments);
   });
+}
+
+}  // namespace vpm::tools
+
+int main(int argc, char** argv) {
+  return vpm::tools::run_or_work(argc, argv, vpm::tools::run_program);
 }

@@ -33,6 +33,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/given_options.h"
 #include "tools/common/list_run.h"
+#include "tools/common/list_worker.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
 #include "tools/common/repair_option.h"
@@ -470,10 +471,8 @@ void write_exports(const Arguments& a, const std::vector<Sphere>& spheres) {
     export_packing(path, inflated(a, spheres), link_name(a));
 }
 
-}  // namespace vpm::tools
-
-int main(int argc, char** argv) {
-  using namespace vpm::tools;
+// Does what the command line, or a configuration, says. Returns the exit status.
+int run_program(int argc, char** argv) {
   Program program("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
   Arguments arguments;
   ListArguments list;
@@ -489,4 +488,10 @@ int main(int argc, char** argv) {
   return program.run(argc, words.data(), [&] {
     if (!run_list(program, list, {"mesh", ".vpmp"})) run(program, arguments);
   });
+}
+
+}  // namespace vpm::tools
+
+int main(int argc, char** argv) {
+  return vpm::tools::run_or_work(argc, argv, vpm::tools::run_program);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/common/list_run.h"
+#include "tools/common/list_worker.h"
 #include "tools/query/arguments.h"
 #include "tools/query/mode.h"
 #include "tools/query/pairs.h"
@@ -47,12 +48,8 @@ void run(Program& program, const Arguments& arguments) {
   program.end_with(setup.collisions.exit_code());
 }
 
-}  // namespace
-}  // namespace vpm::tools
-
-int main(int argc, char** argv) {
-  using namespace vpm::tools;
-  std::ios::sync_with_stdio(false);  // so that standard input is read in blocks
+// Does what the command line, or a configuration, says. Returns the exit status.
+int run_program(int argc, char** argv) {
   Program program("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   ListArguments list;
@@ -70,4 +67,12 @@ int main(int argc, char** argv) {
   return program.run(argc, argv, [&] {
     if (!run_list(program, list, {"cloud", ".jsonl"})) run(program, arguments);
   });
+}
+
+}  // namespace
+}  // namespace vpm::tools
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);  // so that standard input is read in blocks
+  return vpm::tools::run_or_work(argc, argv, vpm::tools::run_program);
 }
