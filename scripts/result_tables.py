@@ -32,7 +32,8 @@ def source(report):
     if device:
         return f"`{report['command']}`, commit {report['commit'][:7]}, {device}."
     machines = report.get("machines") or [report["machine"]]
-    cores = ", ".join(f"{machine['cores']} cores of {machine['processor']}" for machine in machines)
+    cores = ", ".join(f"{machine['cores']} cores of {machine['processor']}" + (f", {machine['gpu']}" if "gpu" in machine else "")
+                      for machine in machines)
     return f"`{report['command']}`, commit {report['commit'][:7]}, {cores}."
 
 

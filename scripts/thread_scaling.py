@@ -8,6 +8,7 @@ BIN is the folder of the programs and of make-example, COMMIT what they were bui
 reading the tool and preparing the scene, is taken off. Each figure is the median of three rounds, which measure all in turn. Fails if
 the answers are not the same bytes for any number of threads.
 """
+import functools
 import json
 import os
 import pathlib
@@ -61,20 +62,25 @@ def processor():
     return next(line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
 
 
-def report(script, usage, make_inputs, measured):
-    """Runs `measured` on the inputs in a new folder, with the programs of BIN, and prints its rows with command, commit and machine."""
-    if len(sys.argv) != 3:
+def report(script, usage, make_inputs, measured, *folders, machine=dict):
+    """Runs `measured` on the inputs in a new folder, with the programs of BIN, and prints its rows with command, commit and machine.
+
+    Inputs are made of `folders`, which the command names after COMMIT; machine() tells what the machine has but a processor.
+    """
+    if len(sys.argv) != 3 + len(folders):
         sys.exit(usage)
-    programs = str(pathlib.Path(sys.argv[1]).resolve())
+    programs, *given = (pathlib.Path(path).resolve() for path in [sys.argv[1], *sys.argv[3:]])
     environment = dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}")
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        run = lambda *command: subprocess.run([str(word) for word in command], check=True, env=environment, stdout=sys.stderr)
-        make_inputs(run)
+        checked = functools.partial(subprocess.run, check=True)
+        run = lambda *command, by=checked: by([str(word) for word in command], env=environment, stdout=sys.stderr)
+        make_inputs(run, *given)
         results = list(measured(run))
         os.chdir("/")
-    json.dump({"command": f"scripts/{script} BIN COMMIT", "commit": sys.argv[2],
-               "machine": {"cores": len(os.sched_getaffinity(0)), "processor": processor()}, "results": results}, sys.stdout, indent=1)
+    json.dump({"command": " ".join(["scripts/" + script, "BIN", "COMMIT", *folders]), "commit": sys.argv[2],
+               "machine": {"cores": len(os.sched_getaffinity(0)), "processor": processor()} | machine(), "results": results},
+              sys.stdout, indent=1)
     print()
 
 
