@@ -379,6 +379,12 @@ def over_a_list(report):
                   for job in dict.fromkeys(job for job, _ in of)])
 
 
+def list_on_gpus(report):
+    return table(["GPUs", "jobs", "frames a second; slower and faster round", "seconds to the first"],
+                 [[row["gpus"] or "none", row["jobs"], "{:.0f} ({:.0f} to {:.0f})".format(row["frames_per_second"], *row["range"]),
+                   f"{row['seconds_to_first']:.1f}"] for row in report["results"]])
+
+
 def fuzz(report):
     rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
             for name, t in report["targets"].items()]
@@ -400,7 +406,8 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "list": (over_a_list, "list"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "list": (over_a_list, "list"),
+             "list on GPUs": (list_on_gpus, "list_gpus"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
              "fuzz": (fuzz, "fuzz")}}
 
 

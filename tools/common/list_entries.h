@@ -13,7 +13,7 @@ namespace vpm::tools {
 // Values of the options of lists.
 struct ListArguments {
   std::string list, shard;
-  int jobs = 0;  // runs at a time; 0: one per core
+  int jobs = 0;  // runs at a time; 0: one per core, or per GPU that runs use
 };
 
 // Which option of a program takes the input that a line names, and how the names of its outputs

@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kVisibleGpus = "CUDA_VISIBLE_DEVICES";
 
 // Returns the GPUs that runs are spread over, as CUDA_VISIBLE_DEVICES names them: none where there
-// is one at most, or where --device says more than that a GPU is wanted.
+// is none, or where --device says more than that a GPU is wanted.
 std::vector<std::string> gpus_for(const Program& program) {
   const std::string& device = program.common().device;
   if (!program.can_use_devices() || (device != "auto" && device != "cuda")) return {};
@@ -37,7 +37,7 @@ std::vector<std::string> gpus_for(const Program& program) {
   } else {
     for (int k = 0; k < cuda_device_count(); ++k) gpus.push_back(std::to_string(k));
   }
-  if (gpus.size() < 2) gpus.clear();
+  if (gpus.size() == 1 && cuda_device_count() == 0) gpus.clear();
   return gpus;
 }
 
@@ -49,9 +49,11 @@ class ListRun {
         faults_(entries_.size()),
         progress_("inputs", program.common()) {
     const int threads = thread_count();
-    const int jobs = a.jobs > 0 ? a.jobs : threads;
-    threads_ = std::max(1, threads / jobs);
     const std::vector<std::string> gpus = gpus_for(program);
+    // Runs on the same GPU wait for each other.
+    const int at_once = gpus.empty() ? threads : static_cast<int>(gpus.size());
+    const int jobs = a.jobs > 0 ? a.jobs : at_once;
+    threads_ = std::max(1, threads / jobs);
     for (std::size_t k = 0; k < static_cast<std::size_t>(jobs); ++k)
       jobs_.push_back({gpus.empty() ? "" : gpus[k % gpus.size()]});
     for (const ListEntry& entry : entries_) records_.emplace_back(program, entry);
@@ -204,7 +206,9 @@ void declare_list(CLI::App& app, ListArguments& a) {
       ->option_text("FILE");
   app.add_option("--shard", a.shard, "Of --list, only part i of n: every n-th line from the i-th")
       ->option_text("I/N");
-  app.add_option("--jobs", a.jobs, "Inputs of --list that are worked on at a time; 0: one per core")
+  app.add_option("--jobs", a.jobs,
+                 "Inputs of --list that are worked on at a time; 0: one per core, or per GPU where "
+                 "these are used")
       ->check(whole_number_in(0, 4096))
       ->capture_default_str();
 }
