@@ -112,8 +112,9 @@ void View::add_scene(const Scene& scene, std::span<const std::string> names) {
 }
 
 void View::set_frames(const std::string& name, std::function<PointCloud(std::size_t)> frame) {
-  impl().set_frames(
-      name, [frame = std::move(frame)](std::size_t number) { return std::vector{frame(number)}; });
+  impl().set_frames({view::shown_name(name)}, [frame = std::move(frame)](std::size_t number) {
+    return view::PoseView::Images{frame(number)};
+  });
 }
 
 void View::see_frame(std::optional<std::size_t> frame) {

@@ -139,9 +139,12 @@ function imageLayers(layer) {
   const surface = {
     name: layer.name, type: 'surface', on: true, object: shown.surface, swatch: look(SURFACE_COLOR), shown, byNormal,
     opacity: shown.surface.material.uniforms.opacity,
+    // A step that shows no image leaves the one before, which is not drawn.
     atStep(step) {
-      shown.show(ofStep ? ofStep[Math.min(step, ofStep.length - 1)] : 0);
+      const number = ofStep ? ofStep[Math.min(step, ofStep.length - 1)] : 0, isAbsent = number >= layer.images.length;
+      if (!isAbsent || !shown.image) shown.show(isAbsent ? 0 : number);
       surface.count = points.count = shown.shapes.count;
+      for (const own of all) own.isAbsent = isAbsent;
     },
     setCoarse(on) { shown.isCoarse = on; },
     showTool: (center, radius, up) => shown.showTool(center, radius, up),
@@ -160,8 +163,10 @@ function imageLayers(layer) {
     legend: [['hidden behind the surface', UNSEEN_COLOR], ['not measured', null, 'hatch'], ['seen free', '#bfe1f2']],
   };
   const camera = {name: 'camera' + of, type: 'camera', on: true, object: shown.frustum, swatch: {color: CAMERA_COLOR, shape: 'line'}};
-  if (!layer.images.some(image => image.removed)) return [surface, points, unseen, camera];
+  const all = [surface, points, unseen, camera];
+  if (!layer.images.some(image => image.removed)) return all;
   const removed = {name: 'removed from the image' + of, type: 'removed', on: true, object: shown.removed, swatch: {color: REMOVED_COLOR, shape: 'ball'}};
   removed.atStep = () => { removed.count = shown.removed.geometry.attributes.position.count; };
-  return [surface, points, unseen, camera, removed];
+  all.push(removed);
+  return all;
 }

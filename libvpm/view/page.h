@@ -87,6 +87,9 @@ struct Column {
   std::optional<std::size_t> body{};
 };
 
+// Number of an image that a step shows which shows none.
+inline constexpr std::uint32_t kNoImage = UINT32_MAX;
+
 class Page {
  public:
   Page(std::string program, std::string title);
@@ -106,8 +109,9 @@ class Page {
                        std::span<const Pose> poses, bool is_tool = true);
   std::size_t add_column(const Column& column);
 
-  // Adds images. `of_step` says which one each step shows; empty: the first. Pixels of the images,
-  // all of equal size, are taken one in `stride` each way, 0: as many as kMostPixels allows.
+  // Adds images. `of_step` says which one each step shows, or kNoImage; empty: the first. Pixels of
+  // the images, all of equal size, are taken one in `stride` each way, 0: as many as kMostPixels
+  // allows.
   void add_image(const std::string& name, std::span<const ImageView> images,
                  std::span<const std::uint32_t> of_step, bool by_normal = false,
                  std::uint32_t stride = 0);

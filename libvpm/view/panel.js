@@ -102,7 +102,7 @@ function legendLine(layer, [name, color, form, state], changed) {
 function refreshLayers(layers, step) {
   for (const layer of layers) if (layer.row) layer.row.cell.textContent = layer.step === undefined ? '' : '0';
   for (const layer of layers) {
-    const isHere = layer.step === undefined || layer.step === step;
+    const isHere = !layer.isAbsent && (layer.step === undefined || layer.step === step);
     layer.object.visible = layer.on && isHere;
     if (!layer.row || !isHere) continue;
     layer.row.cell.textContent = layer.count === undefined ? '' : layer.count.toLocaleString('en') + (layer.unit ? ' ' + layer.unit : '');

@@ -82,8 +82,8 @@ void PoseView::add_cloud(const std::string& name, const PointCloud& cloud) {
   clouds_.emplace_back(shown_name(name), cloud);
 }
 
-void PoseView::set_frames(const std::string& name, Frames frames) {
-  frames_name_ = shown_name(name);
+void PoseView::set_frames(std::vector<std::string> names, Frames frames) {
+  cameras_ = std::move(names);
   frames_ = std::move(frames);
 }
 
@@ -127,7 +127,7 @@ void PoseView::add_facts(Page& page) const {
   for (const auto& [name, cloud] : clouds_)
     page.add_fact("cloud", name + maker_of(HandleAccess::held(cloud).provenance.json()));
   for (const std::string& name : solids_.names()) page.add_fact("solid", name);
-  if (frames_) page.add_fact("frames", frames_name_);
+  for (const std::string& name : cameras_) page.add_fact("frames", name);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
   if (options_.stiffness != 1) page.add_fact("stiffness", with_unit(options_.stiffness, "N/m³"));
@@ -160,42 +160,55 @@ PoseView::Cameras PoseView::add_frames(Page& page, const std::vector<Step>& step
   std::vector<std::size_t> frames(seen.begin(), seen.end());
   const std::size_t every = (frames.size() + kMostFrames - 1) / kMostFrames;
   std::vector<std::size_t> shown;
-  std::vector<std::vector<PointCloud>> clouds;  // of each frame, of each camera
+  std::vector<Images> clouds;  // of each frame, of each camera
   std::size_t pixels = 0;
   for (std::size_t k = 0; k < frames.size(); k += every) {
     shown.push_back(frames[k]);
-    for (const PointCloud& cloud : clouds.emplace_back(frames_(frames[k]))) {
-      if (!cloud.camera()) {
-        page.add_points("measured points", HandleAccess::held(cloud));
+    for (const std::optional<PointCloud>& cloud : clouds.emplace_back(frames_(frames[k]))) {
+      if (cloud && !cloud->camera()) {
+        page.add_points("measured points", HandleAccess::held(*cloud));
         page.add_note("The frames are clouds without a camera: the first one is shown.");
         return {};
       }
-      pixels += image_of(cloud).depth->depth.size();
+      if (cloud) pixels += image_of(*cloud).depth->depth.size();
     }
   }
   if (clouds.empty()) return {};
-  std::vector<std::uint32_t> of_step;
-  Cameras cameras;
-  for (const Step& step : steps) {
-    const auto after = std::ranges::upper_bound(shown, step.frame.value_or(0));
-    of_step.push_back(
-        static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - shown.begin() - 1, 0)));
-    std::vector<Camera>& now = cameras.emplace_back();
-    for (const PointCloud& cloud : clouds[of_step.back()]) now.push_back(*cloud.camera());
+  std::vector<std::optional<std::size_t>> of_step;  // indices of `shown`; none before the first
+  Cameras cameras(steps.size());
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    of_step.emplace_back();
+    if (!steps[k].frame) continue;
+    const auto after = std::ranges::upper_bound(shown, *steps[k].frame);
+    of_step.back() = static_cast<std::size_t>(after - shown.begin() - 1);
+    for (const std::optional<PointCloud>& cloud : clouds[*of_step.back()])
+      if (cloud) cameras[k].push_back(*cloud->camera());
   }
   std::uint32_t stride = 1;
   while (pixels / stride / stride > kFramePixels) ++stride;
-  const std::size_t count = clouds.front().size();
-  for (std::size_t camera = 0; camera < count; ++camera) {
-    std::vector<ImageView> images;
-    for (const std::vector<PointCloud>& frame : clouds) images.push_back(image_of(frame[camera]));
-    const std::string of = count > 1 ? " of camera " + std::to_string(camera) : "";
-    page.add_image("measured surface" + of, images, of_step, false, stride);
-  }
+  for (std::size_t camera = 0; camera < cameras_.size(); ++camera)
+    add_camera(page, camera, clouds, of_step, stride);
   if (every > 1)
     page.add_fact("frames shown",
                   std::to_string(shown.size()) + " of " + std::to_string(frames.size()));
   return cameras;
+}
+
+// Adds the images of one camera among those of frames. `of_step` says which frame each step sees.
+void PoseView::add_camera(Page& page, std::size_t camera, std::span<const Images> frames,
+                          std::span<const std::optional<std::size_t>> of_step,
+                          std::uint32_t stride) const {
+  std::vector<ImageView> images;
+  std::vector<std::uint32_t> of_frame, numbers;
+  for (const Images& frame : frames) {
+    of_frame.push_back(frame[camera] ? static_cast<std::uint32_t>(images.size()) : kNoImage);
+    if (frame[camera]) images.push_back(image_of(*frame[camera]));
+  }
+  if (images.empty()) return;
+  for (const std::optional<std::size_t>& frame : of_step)
+    numbers.push_back(frame ? of_frame[*frame] : kNoImage);
+  const std::string of = cameras_.size() > 1 ? " of " + cameras_[camera] : "";
+  page.add_image("measured surface" + of, images, numbers, false, stride);
 }
 
 namespace {
@@ -350,7 +363,7 @@ std::string PoseView::title() const {
   for (std::size_t t = 1; t < names_.size(); ++t) title += ", " + names_[t];
   std::vector<std::string> scene;
   for (const auto& [name, cloud] : clouds_) scene.push_back(name);
-  if (frames_) scene.push_back(frames_name_);
+  for (const std::string& name : cameras_) scene.push_back(name);
   for (const std::string& name : solids_.names()) scene.push_back(name);
   return scene.empty() ? title : title + " in " + file::listed(scene);
 }
@@ -369,7 +382,9 @@ Page PoseView::page() const {
   for (std::size_t t = 0; t < tools_.size(); ++t)
     volumes.push_back(add_tool(page, steps, t, is_joined));
   const Cameras frame_cameras = add_scene(page, steps);
-  if (!frame_cameras.empty()) page.set_up(image_up(frame_cameras.front().front()));
+  const auto first =
+      std::ranges::find_if(frame_cameras, [](const auto& now) { return !now.empty(); });
+  if (first != frame_cameras.end()) page.set_up(image_up(first->front()));
   say_what_is_odd(page, steps, frame_cameras);
 
   std::vector<std::uint32_t> numbers;

@@ -23,8 +23,10 @@ namespace vpm::view {
 // is told.
 class PoseView {
  public:
-  // Returns what each camera shows in a frame, by its number: as many of all frames.
-  using Frames = std::function<std::vector<PointCloud>(std::size_t)>;
+  // Returns what each camera shows in a frame, by its number: as many of all frames, none of a
+  // camera that has shown nothing yet.
+  using Images = std::vector<std::optional<PointCloud>>;
+  using Frames = std::function<Images(std::size_t)>;
   struct Answer {
     Pose pose;
     Result result;
@@ -42,7 +44,8 @@ class PoseView {
   void set_mesh(std::size_t tool, Solid mesh) { meshes_[tool] = std::move(mesh); }
   void add_cloud(const std::string& name, const PointCloud& cloud);
   void add_solid(const std::string& name, const Body& body) { solids_.add(name, body); }
-  void set_frames(const std::string& name, Frames frames);
+  // `names` has one for each camera, as it is to be shown.
+  void set_frames(std::vector<std::string> names, Frames frames);
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }
 
   std::size_t tools() const { return tools_.size(); }
@@ -75,6 +78,8 @@ class PoseView {
   // Return the cameras of the frame that each step sees; empty without frames that have one.
   Cameras add_scene(Page& page, const std::vector<Step>& steps) const;
   Cameras add_frames(Page& page, const std::vector<Step>& steps) const;
+  void add_camera(Page& page, std::size_t camera, std::span<const Images> frames,
+                  std::span<const std::optional<std::size_t>> of_step, std::uint32_t stride) const;
   // Return the number of the column of volumes.
   std::size_t add_tool(Page& page, const std::vector<Step>& steps, std::size_t tool,
                        bool is_joined) const;
@@ -93,8 +98,8 @@ class PoseView {
   QueryOptions options_;
   std::vector<std::pair<std::string, PointCloud>> clouds_;
   ShownSolids solids_;
-  std::string frames_name_;
-  Frames frames_;  // none without a recording
+  std::vector<std::string> cameras_;  // their names
+  Frames frames_;                     // none without a recording
   std::size_t most_steps_, seen_ = 0, every_ = 1;
   std::optional<std::size_t> frame_;
   std::vector<Step> steps_;

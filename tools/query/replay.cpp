@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,7 +65,9 @@ class Replay {
            std::optional<View>& view);
 
   // Reads the frames of a scene of the page again, one of each camera.
-  std::vector<PointCloud> clouds_of(std::size_t number) const;
+  view::PoseView::Images clouds_of(std::size_t number) const;
+  // Returns the names of the cameras: those of their recordings, as far as needed to differ.
+  std::vector<std::string> camera_names() const;
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -282,28 +285,28 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   }
 }
 
-std::vector<PointCloud> Replay::clouds_of(std::size_t number) const {
-  std::vector<std::size_t> frames{number};
-  if (recording_.sources > 1) {
-    frames.clear();
-    for (std::size_t source = 0; source < recording_.sources; ++source) {
-      const auto is_of_it = [&](const RecordedFrame& frame) { return frame.source == source; };
-      const auto now = std::ranges::find_if(
-          shown_[number], [&](std::size_t frame) { return is_of_it(recording_.frames[frame]); });
-      // A camera that has shown nothing yet shows its first frame.
-      const auto first = std::ranges::find_if(recording_.frames, is_of_it);
-      frames.push_back(now != shown_[number].end()
-                           ? *now
-                           : static_cast<std::size_t>(first - recording_.frames.begin()));
-    }
-  }
-  std::vector<PointCloud> clouds;
-  for (const std::size_t frame : frames) {
+view::PoseView::Images Replay::clouds_of(std::size_t number) const {
+  const bool is_one = recording_.sources == 1;
+  view::PoseView::Images clouds(recording_.sources);
+  for (const std::size_t frame : is_one ? std::vector{number} : shown_[number]) {
     ImportedScan scan = read_frame(recording_.frames[frame], import_);
     if (scan.image) scan.points.sensor = std::move(scan.image);
-    clouds.push_back(HandleAccess::make<PointCloud>(std::move(scan.points)));
+    clouds[recording_.frames[frame].source] =
+        HandleAccess::make<PointCloud>(std::move(scan.points));
   }
   return clouds;
+}
+
+std::vector<std::string> Replay::camera_names() const {
+  std::vector<std::string> names;
+  for (const std::string& folder : arguments_.frames) {
+    const std::filesystem::path path(folder);  // whose name would be empty behind a last /
+    names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
+  }
+  if (std::set(names.begin(), names.end()).size() < names.size()) names = arguments_.frames;
+  if (names.size() > 1 && !arguments_.topic.empty())
+    for (std::size_t k = 0; k < names.size(); ++k) names[k] += ":" + arguments_.topic[k];
+  return names;
 }
 
 std::optional<std::size_t> Replay::number_of_scene() {
@@ -349,7 +352,8 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<View>& view) {
   if (view)
-    view::PoseView::of(*view).set_frames(folders_, [this](std::size_t k) { return clouds_of(k); });
+    view::PoseView::of(*view).set_frames(camera_names(),
+                                         [this](std::size_t k) { return clouds_of(k); });
   if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();

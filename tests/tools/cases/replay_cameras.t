@@ -33,7 +33,15 @@ vpm-query: note: --remove: 2176 pixels removed from 6 images, with a margin of 0
 $ python3 -c 'import json; print([[round(max(json.loads(l)[k] for l in open(f)), 3) + 0 for k in ("volume_fraction", "unseen")] for f in ("both.jsonl", "removed.jsonl")])'
 [[0.357, 0.0], [0.0, 1.0]]
 $ for f in both removed; do for w in '"type":"image"' '"removed":'; do grep -o $w $f.html | wc -l; done; done | xargs
-2 0 2 8
+2 0 2 7
+
+# Its layers have the names of the recordings. A camera of which nothing has come yet shows nothing: no images before the first.
+$ printf '%s\n' '999.95 0 0 0.95 0 0 0 1' '1000.15 0 0 0.95 0 0 0 1' > early.txt; vpm-query --tool cube.vpmg --frames left --frames right/ --poses early.txt --camera-poses left/groundtruth.txt --camera-poses right.txt --rate 100 --quiet -o early.jsonl --view early.html
+2> vpm-query: warning: 5 steps came before the first frame that can be used: nothing is in their way
+$ python3 -c "import base64, json, struct; p = open('early.html').read(); d = json.JSONDecoder().raw_decode(p, p.index('{', p.index('id=\"data\"')))[0]; print(d['title']); [print(l['name'], len(l['images']), [k for k, n in enumerate(struct.unpack('<21I', base64.b64decode(l['of_step']['data']))) if n >= len(l['images'])]) for l in d['layers'] if l['type'] == 'image']"
+cube.vpmg in left, right
+measured surface of left 6 [0, 1, 2, 3, 4]
+measured surface of right 5 [0, 1, 2, 3, 4, 5, 6]
 
 # What tells nothing of one camera among several is refused.
 $ bash ask.sh --camera-poses right.txt
