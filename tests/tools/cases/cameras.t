@@ -25,8 +25,8 @@ $ vpm-normals wall.png -o beyond.vpmc --intrinsics 60,60,31.5,23.5 --depth-scale
 # Cameras that are wrong by little are moved until they agree, half way each, in any order; the wall tells nothing of motions along it.
 $ vpm-normals wall.png -o near.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0.006,0,0,0,1 --quiet && vpm-query --tool cube.vpmg --cloud front.vpmc --cloud near.vpmc --pose 0,0,0.95,0,0,0,1 --register -o moved.jsonl
 2> vpm-query: note: --register: the images disagree by 0.00 mm, and disagreed by 8.88 mm; they tell 3 of 6 motions of cameras against each other; the others stay
-2> vpm-query: note: front.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to *,0.003000,* (glob)
-2> vpm-query: note: near.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to *,0.003000,* (glob)
+2> vpm-query: note: front.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to 0.000000,0.000000,0.003000,0.0000000,0.0000000,0.0000000,1.0000000
+2> vpm-query: note: near.vpmc: its camera is moved by 3.00 mm and 0.000 degrees, to 0.000000,0.000000,0.003000,0.0000000,0.0000000,0.0000000,1.0000000
 $ vpm-query --tool cube.vpmg --cloud near.vpmc --cloud front.vpmc --pose 0,0,0.95,0,0,0,1 --register --quiet | cmp - moved.jsonl; vpm-query --tool cube.vpmg --cloud near.vpmc --cloud front.vpmc --pose 0,0,0.95,0,0,0,1 --register --dump-config > call.json && $VALIDATE config.vpm-query call.json; python3 -c "import json; print(round(json.load(open('moved.jsonl'))['volume_fraction'], 2))"
 0.24
 $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --register; vpm-query --tool cube.vpmg --cloud front.vpmc --poses poses.txt --register
