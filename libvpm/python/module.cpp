@@ -2,6 +2,11 @@
 #include <vpm/device.h>
 #include <vpm/version.h>
 
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <utility>
+
 #include "libvpm/python/arrays.h"
 
 namespace vpm::python {
@@ -46,6 +51,48 @@ void bind_devices(py::module_& module) {
              "result. To be called once, before other work.");
 }
 
+// Breaks the lines of a docstring at blanks: pydoc shows them as they are, indented.
+std::string in_lines(const std::string& doc) {
+  constexpr std::size_t kLongest = 88;  // characters
+  std::string text;
+  std::istringstream lines(doc);
+  for (std::string line; std::getline(lines, line); text += line + "\n")
+    while (line.size() > kLongest) {
+      const std::size_t blank = line.rfind(' ', kLongest);
+      if (blank == line.npos) break;
+      text += line.substr(0, blank) + "\n";
+      line.erase(0, blank + 1);
+    }
+  return text.substr(0, text.find_last_not_of('\n') + 1);
+}
+
+// True if this is a function that pybind11 made, whose docstring is its to free.
+bool is_ours(py::handle function) {
+  return PyCFunction_Check(function.ptr()) &&
+         PyCapsule_CheckExact(PyCFunction_GET_SELF(function.ptr()));
+}
+
+// Breaks the lines of the docstrings of all that the dictionary of the module or of its class has.
+void break_lines(const py::dict& members) {
+  for (const auto& [name, member] : members) {
+    const bool is_static = Py_TYPE(member.ptr()) == &PyStaticMethod_Type;
+    const py::object held = is_static ? py::object(member.attr("__func__"))
+                                      : py::reinterpret_borrow<py::object>(member);
+    const py::handle function = py::detail::get_function(held);
+    const bool is_class =
+        PyType_Check(member.ptr()) && py::str(member.attr("__module__")).equal(py::str("vpm"));
+    if (is_ours(function)) {
+      const char*& doc = reinterpret_cast<PyCFunctionObject*>(function.ptr())->m_ml->ml_doc;
+      const std::string broken = in_lines(doc == nullptr ? "" : doc);
+      std::free(const_cast<char*>(std::exchange(doc, ::strdup(broken.c_str()))));
+    } else if (is_class || Py_TYPE(member.ptr()) == &PyProperty_Type) {
+      const py::object doc = member.attr("__doc__");
+      if (!doc.is_none()) member.attr("__doc__") = in_lines(doc.cast<std::string>());
+      if (is_class) break_lines(member.attr("__dict__"));
+    }
+  }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_vpm, module) {
@@ -68,6 +115,7 @@ PYBIND11_MODULE(_vpm, module) {
   bind_device_arrays(module);
   bind_view(module);
   bind_haptics(module);
+  break_lines(module.attr("__dict__"));
   module.attr("__name__") = own_name;
 }
 

@@ -69,3 +69,15 @@ def test_everything_has_its_help():
             for member, value in vars(documented).items():
                 if not member.startswith("_"):
                     assert inspect.getdoc(value), f"{name}.{member}"
+
+
+def test_pydoc_fits_a_terminal():
+    """pydoc breaks no lines, and indents those of members by 12 characters, those of functions by 8."""
+    told = [(vpm.__doc__, 100)]
+    for name in vpm.__all__:
+        documented = getattr(vpm, name)
+        told.append((inspect.getdoc(documented), 92))
+        if inspect.isclass(documented) and not issubclass(documented, int):
+            told += [(inspect.getdoc(value), 88) for value in vars(documented).values() if inspect.getdoc(value)]
+    assert len(told) > 200
+    assert [line for doc, longest in told for line in doc.splitlines() if len(line) > longest] == []

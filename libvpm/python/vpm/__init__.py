@@ -1,14 +1,15 @@
-"""How much of a solid tool is inside a scanned scene, and with which force and torque it is pushed out.
+"""How much of a solid tool is in a scanned scene, and which force and torque push it out.
 
     import vpm
-    tool = vpm.make_tool("gripper.stl", scale=0.001)                  # or Tool.read("gripper.vpmg")
+    tool = vpm.make_tool("gripper.stl", scale=0.001)             # or Tool.read("gripper.vpmg")
     cloud = vpm.import_depth(image, intrinsics=(525, 525, 319.5, 239.5))
     query = vpm.Query(tool)
     result = query.run(vpm.Scene(cloud), [0, 0, 1, 0, 0, 0, 1])      # tool to world
     print(result.volume_fraction, result.force)
 
-Lengths are metres. A pose maps tool (or camera) to world coordinates: 7 numbers tx ty tz qx qy qz qw, or a matrix
-(4, 4) or (3, 4). Errors are vpm.Error and its subclasses; data that are probably not what was meant give vpm.SetupWarning.
+Lengths are metres. A pose maps tool (or camera) to world coordinates: 7 numbers tx ty tz qx
+qy qz qw, or a matrix (4, 4) or (3, 4). Errors are vpm.Error and its subclasses; data that are
+probably not what was meant give vpm.SetupWarning.
 """
 import os as _os
 
@@ -85,8 +86,9 @@ import_depth.__doc__ = _vpm.import_depth.__doc__.split("\n\n", 1)[1]
 
 
 def solid_of(mesh, **options):
-    """Returns the vpm.SolidMesh of a file's path, of (vertices, triangles), or of what has `vertices` and `faces`, as
-    meshes of trimesh and Open3D-like libraries do. Options are those of SolidMesh.read and from_triangles."""
+    """Returns the vpm.SolidMesh of a file's path, of (vertices, triangles), or of what has
+    `vertices` and `faces`, as meshes of trimesh and Open3D-like libraries do. Options are those
+    of SolidMesh.read and from_triangles."""
     if isinstance(mesh, SolidMesh):
         if options:
             raise ArgumentError("a SolidMesh takes no further options")
@@ -100,17 +102,20 @@ def solid_of(mesh, **options):
 def make_tool(mesh, *, spheres=1000, levels=(), calibrate=False, progress=None, **options):
     """Packs a mesh and returns its vpm.Tool.
 
-    mesh: what solid_of() takes; options are passed on. spheres: number of spheres. levels: numbers of spheres of further
-    levels. calibrate: measures each level's error, for vpm.LevelQuery."""
+    mesh: what solid_of() takes; options are passed on. spheres: number of spheres. levels:
+    numbers of spheres of further levels. calibrate: measures each level's error, for
+    vpm.LevelQuery."""
     packing = pack(solid_of(mesh, **options), spheres=spheres, progress=progress)
     return build_tool(packing, levels=list(levels), calibrate=calibrate, progress=progress)
 
 
 def overlap(a, pose_a, b, pose_b, *, with_force=True, stiffness=1.0, contacts=0):
-    """Returns the vpm.Overlap of two solids at a pose each: vpm.SolidBody, or what solid_of() takes.
+    """Returns the vpm.Overlap of two solids at a pose each: vpm.SolidBody, or what solid_of()
+    takes.
 
-    Exact for closed meshes: flush faces share nothing, thin, coincident and enclosed solids are right. Keep an
-    OverlapQuery of two SolidBody for many poses: preparing them takes longer than asking."""
+    Exact for closed meshes: flush faces share nothing, thin, coincident and enclosed solids
+    are right. Keep an OverlapQuery of two SolidBody for many poses: preparing them takes longer
+    than asking."""
     bodies = (solid if isinstance(solid, SolidBody) else SolidBody(solid_of(solid), with_force=with_force)
               for solid in (a, b))
     return OverlapQuery(*bodies, with_force=with_force, stiffness=stiffness, contacts=contacts).run(pose_a, pose_b)

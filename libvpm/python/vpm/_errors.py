@@ -5,9 +5,11 @@ log = logging.getLogger("vpm")
 
 
 class Error(Exception):
-    """What is wrong, where, and how to mend it. str(error) is all three; parameters stand in backquotes.
+    """What is wrong, where, and how to mend it. str(error) is all three; parameters stand in
+    backquotes.
 
-    problem: what is wrong. where: file, line or element, as far as it is known. hint: how to mend it.
+    problem: what is wrong. where: file, line or element, as far as it is known. hint: how to
+    mend it.
     """
 
     problem: str = ""
@@ -32,7 +34,8 @@ class WriteError(Error, OSError):
 
 
 class SetupWarning(UserWarning):
-    """Data that were taken, though they are probably not what was meant, such as depths in another unit."""
+    """Data that were taken, though they are probably not what was meant, such as depths in
+    another unit."""
 
 
 for _class in (Error, RefusedError, ArgumentError, UnavailableError, WriteError, SetupWarning):
