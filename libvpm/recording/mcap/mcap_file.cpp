@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -57,12 +56,6 @@ Head read_head(std::ifstream& file, std::uint64_t at) {
   ByteCursor cursor(bytes);
   return take_head(cursor);
 }
-
-// Records of a chunk. The memory is not touched before bytes come, whatever size is declared.
-struct Records {
-  std::unique_ptr<std::byte[]> bytes;
-  std::size_t size = 0;
-};
 
 // Returns as much of a chunk's `size` bytes as comes out before what is compressed ends.
 Records decompress(const std::string& compression, Bytes in, std::size_t size) {
@@ -218,11 +211,16 @@ Remarks File::scan(const std::function<void(const Message&)>& see) const try {
 std::vector<std::byte> File::read(const Place& place) const {
   std::ifstream input(path_, std::ios::binary);
   if (place.chunk == 0) return read_part(input, place.offset, place.size);
-  const std::uint64_t body = place.chunk + kHead, length = read_head(input, place.chunk).length,
-                      there = std::min(length, size_ - body);
-  const Records records = open_chunk(read_part(input, body, there), there < length);
-  if (place.offset + place.size > records.size) refuse("it has changed", {}, "copy it again");
-  const std::byte* const from = records.bytes.get() + place.offset;
+  const std::lock_guard in_turn(busy_);
+  if (opened_ != place.chunk) {
+    const std::uint64_t body = place.chunk + kHead, length = read_head(input, place.chunk).length,
+                        there = std::min(length, size_ - body);
+    opened_ = 0;
+    records_ = open_chunk(read_part(input, body, there), there < length);
+    opened_ = place.chunk;
+  }
+  if (place.offset + place.size > records_.size) refuse("it has changed", {}, "copy it again");
+  const std::byte* const from = records_.bytes.get() + place.offset;
   return {from, from + place.size};
 }
 

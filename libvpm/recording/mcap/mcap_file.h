@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "libvpm/import/remark.h"
@@ -28,6 +30,12 @@ struct Message {
   Place place;
 };
 
+// Records of a chunk. The memory is not touched before bytes come, whatever size is declared.
+struct Records {
+  std::unique_ptr<std::byte[]> bytes;
+  std::size_t size = 0;
+};
+
 // A file whose lengths are not believed: none of them takes memory beyond what is there.
 class File {
  public:
@@ -40,13 +48,16 @@ class File {
   // compression is unknown, and Error(unavailable) in builds without liblz4 and libzstd.
   Remarks scan(const std::function<void(const Message&)>& see) const;
 
-  // Returns the bytes of a message that scan() showed. Thread-safe. Throws Error(refused) if the
-  // file has changed.
+  // Returns the bytes of a message that scan() showed. Keeps its chunk, for those that follow it
+  // there. Thread-safe. Throws Error(refused) if the file has changed.
   std::vector<std::byte> read(const Place& place) const;
 
  private:
   std::string path_;
   std::uint64_t size_ = 0;
+  mutable std::mutex busy_;
+  mutable std::uint64_t opened_ = 0;  // place of the chunk that was read last
+  mutable Records records_;           // of it
 };
 
 // Returns the files of a recording: the file itself if it is MCAP by its first bytes, or those of a
