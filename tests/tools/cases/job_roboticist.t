@@ -1,6 +1,5 @@
 # A roboticist's job from an empty folder, by what the pages tell: a recording, two tools each on a path of its own, a run that is
-# interrupted, and a table that says which frame each line saw. (Python's job is tests/python/test_page.py, a haptics engineer's the
-# test Install: the installed example of a live loop.)
+# interrupted, and a table that says which frame each line saw.
 
 # A cube of 0.2 m, and one of 0.1 m; a wall that comes 50 mm nearer each second.
 $ printf '%s\n' OFF '8 6 0' '-1 -1 -1' '1 -1 -1' '1 1 -1' '-1 1 -1' '-1 -1 1' '1 -1 1' '1 1 1' '-1 1 1' '4 3 2 1 0' '4 4 5 6 7' '4 0 1 5 4' '4 1 2 6 5' '4 2 3 7 6' '4 3 0 4 7' > cube.off
