@@ -93,9 +93,9 @@ bool has_mesh_ending(const std::string& path) {
 bool is_mesh_file(const std::string& path) {
   std::error_code fault;
   if (!fs::is_regular_file(path, fault) || file::is_container(path)) return false;
-  const std::vector<std::byte> bytes = file::read_all(path);
-  if (const auto content = file::sniff(bytes)) return content->is_mesh;
-  return has_mesh_ending(path);
+  if (has_mesh_ending(path)) return true;
+  const auto content = file::sniff(file::read_all(path));
+  return content && (content->is_mesh || content->scan == file::ScanFormat::ply);
 }
 
 Tool tool_of_mesh(const Program& program, const std::string& path) {

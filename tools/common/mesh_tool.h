@@ -15,8 +15,8 @@
 
 namespace vpm::tools {
 
-// True if the file is a mesh that vpm-pack reads, by its content, or by the ending of its name
-// where the content tells nothing. Standard input is none.
+// True if the file is a mesh that vpm-pack reads, by the ending of its name, or by its content, of
+// which PLY may also be points. Standard input is none.
 bool is_mesh_file(const std::string& path);
 
 // True if a file of this name is a mesh that vpm-pack reads, by its ending.

@@ -41,6 +41,14 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses ids.jsonl -o ids.csv; vpm
 $ vpm-pack cube.off -o by_hand.vpmp --spheres 1000 --quiet && vpm-graph by_hand.vpmp -o by_hand.vpmg --quiet && vpm-query --tool by_hand.vpmg --cloud wall.vpmc --poses ids.jsonl -o by_hand.jsonl
 $ vpm-query --tool cube.off --cloud wall.vpmc --poses ids.jsonl | cmp - by_hand.jsonl
 2> vpm-query: note: cube.off: packed with 1000 spheres for this run; vpm-pack and vpm-graph make a .vpmg to keep, of other units and numbers too
+$ awk 'NR == 2 { print "ply\nformat ascii 1.0\nelement vertex " $1; for (k = 0; k < 3; ++k) print "property float " substr("xyz", k + 1, 1); print "element face " $2 "\nproperty list uchar int vertex_indices\nend_header" } NR > 2' cube.off > cube.ply; awk 'NR > 2 && NF == 3 { print "v", $0 } NF > 3 { for (k = 2; k <= NF; ++k) $k += 1; $1 = "f"; print }' cube.off > cube.obj; cp cube.ply nameless
+$ for f in cube.ply cube.obj nameless; do vpm-query --tool $f --cloud wall.vpmc --poses ids.jsonl --quiet | cmp - by_hand.jsonl; vpm-query --tool by_hand.vpmg --solid $f --pose 0.1,0,0,0,0,0,1 | cut -d, -f2; done
+"volume":0.003999999999952574
+"volume":0.003999999999952574
+"volume":0.003999999999952574
+$ printf '<html>' > page.ply; vpm-query --tool page.ply --cloud wall.vpmc --poses ids.jsonl
+2> vpm-query: error: page.ply: this is a web page; download the file itself
+[1]
 $ vpm-query --tool by_hand.vpmg --tool cube.off --cloud wall.vpmc --poses ids.jsonl --threads 1 --quiet | python3 -c 'import json, sys; rows = [json.loads(l) for l in sys.stdin]; print(len({json.dumps({k: v for k, v in r.items() if k != "tool"}) for r in rows}), len(rows))'
 4 8
 $ vpm-query --tool cube.off --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --view cube.html --quiet -o /dev/null && grep -c "<html" cube.html
