@@ -66,8 +66,6 @@ class Replay {
 
   // Reads the frames of a scene of the page again, one of each camera.
   view::PoseView::Images clouds_of(std::size_t number) const;
-  // Returns the names of the cameras: those of their recordings, as far as needed to differ.
-  std::vector<std::string> camera_names() const;
 
   // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
@@ -103,7 +101,7 @@ class Replay {
   // its lines.
   void tell(const LevelQuery& query, PoseCheck& check, Measure measure, bool are_coupled,
             Collisions& collisions, ResultOutput& output, std::optional<View>& view);
-  // Returns the names of the current frames, one for each camera.
+  // Returns the names of the current frames, of several cameras with the name of each.
   std::string frame_name() const;
   // Returns step k of a tool, without rendered wrench and energy if there is no
   // coupling.
@@ -113,7 +111,8 @@ class Replay {
   const Program& program_;
   const ReplayArguments& arguments_;
   double rate_;
-  std::string folders_;  // names of the recordings
+  std::string folders_;               // names of the recordings
+  std::vector<std::string> cameras_;  // the same, as short as they differ
   Recording recording_;
   std::size_t tools_;
   ToolPaths paths_;
@@ -149,6 +148,19 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : between) + name;
   return all;
+}
+
+// Returns the names of the cameras: those of their recordings, with topics where these are given.
+std::vector<std::string> camera_names(const ReplayArguments& a) {
+  std::vector<std::string> names;
+  for (const std::string& folder : a.frames) {
+    const std::filesystem::path path(folder);  // whose name would be empty behind a last /
+    names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
+  }
+  if (std::set(names.begin(), names.end()).size() < names.size()) names = a.frames;
+  if (names.size() > 1 && !a.topic.empty())
+    for (std::size_t k = 0; k < names.size(); ++k) names[k] += ":" + a.topic[k];
+  return names;
 }
 
 void check_cameras(const ReplayArguments& a) {
@@ -188,6 +200,7 @@ Replay::Replay(const QuerySetup& setup, double rate)
 
 void Replay::open_recordings() {
   check_cameras(arguments_);
+  cameras_ = camera_names(arguments_);
   std::vector<Recording> recordings;
   for (const std::string& folder : arguments_.frames) {
     const std::size_t k = recordings.size();
@@ -297,18 +310,6 @@ view::PoseView::Images Replay::clouds_of(std::size_t number) const {
   return clouds;
 }
 
-std::vector<std::string> Replay::camera_names() const {
-  std::vector<std::string> names;
-  for (const std::string& folder : arguments_.frames) {
-    const std::filesystem::path path(folder);  // whose name would be empty behind a last /
-    names.push_back((path.has_filename() ? path : path.parent_path()).filename().string());
-  }
-  if (std::set(names.begin(), names.end()).size() < names.size()) names = arguments_.frames;
-  if (names.size() > 1 && !arguments_.topic.empty())
-    for (std::size_t k = 0; k < names.size(); ++k) names[k] += ":" + arguments_.topic[k];
-  return names;
-}
-
 std::optional<std::size_t> Replay::number_of_scene() {
   if (recording_.sources == 1 || !feed_->frame()) return feed_->frame();
   if (shown_.empty() || shown_.back() != feed_->frames()) shown_.push_back(feed_->frames());
@@ -352,8 +353,7 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
                  Measure measure, std::size_t passed, Collisions& collisions, ResultOutput& output,
                  std::optional<View>& view) {
   if (view)
-    view::PoseView::of(*view).set_frames(camera_names(),
-                                         [this](std::size_t k) { return clouds_of(k); });
+    view::PoseView::of(*view).set_frames(cameras_, [this](std::size_t k) { return clouds_of(k); });
   if (removal_) removal_->begin_counting();
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
@@ -379,8 +379,11 @@ void Replay::run(LevelQuery& query, PoseCheck& check, std::optional<VirtualCoupl
 
 std::string Replay::frame_name() const {
   std::vector<std::string> names;
-  for (const std::size_t frame : feed_->frames())
-    names.push_back(name_of(recording_.frames[frame].path));
+  for (const std::size_t k : feed_->frames()) {
+    const RecordedFrame& frame = recording_.frames[k];
+    names.push_back((cameras_.size() > 1 ? cameras_[frame.source] + "/" : "") +
+                    name_of(frame.path));
+  }
   return joined(names, ";");
 }
 

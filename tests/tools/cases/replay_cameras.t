@@ -14,18 +14,18 @@ $ bash ask.sh --camera-poses left/groundtruth.txt --camera-poses right.txt -o bo
 2> vpm-query: note: intrinsics 90,90,31.5,23.5 are read from camera-intrinsics.txt in right
 2> vpm-query: note: 151 steps in * s, * times real time; latency * us median, * us p99, * us longest; 6 frames used (glob)
 $ python3 -c 'import itertools, json; print(*(f for f, _ in itertools.groupby(json.loads(l)["frame"] for l in open("both.jsonl"))), sep="\n")'
-1000.000000.png
-1000.000000.png;1000.000000.png
-1000.033333.png;1000.000000.png
-1000.066667.png;1000.000000.png
-1000.066667.png;1000.066667.png
-1000.100000.png;1000.066667.png
+left/1000.000000.png
+left/1000.000000.png;right/1000.000000.png
+left/1000.033333.png;right/1000.000000.png
+left/1000.066667.png;right/1000.000000.png
+left/1000.066667.png;right/1000.066667.png
+left/1000.100000.png;right/1000.066667.png
 $ $VALIDATE query-result both.jsonl && $VALIDATE query-stats stats.json
 
 # A step gives the result of its pose in a scene made afresh of these frames, in either order.
 $ vpm-normals left/depth/1000.066667.png -o left.vpmc --intrinsics 60,60,31.5,23.5 --quiet && vpm-normals right/depth/1000.066667.png -o right.vpmc --intrinsics 90,90,31.5,23.5 --camera-pose 0.02,0,0,0,0,0,1 --quiet
 $ vpm-query --tool cube.vpmg --cloud right.vpmc --cloud left.vpmc --pose 0,0,0.95,0,0,0,1 --quiet | cut -d, -f2- > afresh
-$ grep '1000.066667.png;1000.066667.png' both.jsonl | cut -d, -f4- | sort -u | cmp - afresh
+$ grep 'left/1000.066667.png;right/1000.066667.png' both.jsonl | cut -d, -f4- | sort -u | cmp - afresh
 
 # The page has the surface and the frustum of each camera, and what --remove took from them; nothing is in the way of what was removed.
 $ echo '{"remove":["cube.off@0,0,1,0,0,0,1"]}' > still.jsonl; bash ask.sh --camera-poses left/groundtruth.txt --camera-poses right.txt --remove still.jsonl -o removed.jsonl --view removed.html --rate 30 2>&1 | grep remove
