@@ -371,6 +371,13 @@ def threads(report):
     return table(["threads, each on a core"] + [head for name in kinds.values() for head in (f"{name}, a second", "of N times one thread's")], rows)
 
 
+def python(report):
+    kinds, ways = {"clear": "poses that touch nothing", "deep": "poses in the surface"}, {"batch": "at once", "singles": "one by one"}
+    return table(["what is asked", "C++, µs a pose", "Python, µs a pose", "Python over C++, median (quartiles)", "added, µs a pose"],
+                 [[f"{kinds[r['poses']]}, {ways[r['way']]}", f"{r['cpp_us']:.1f}", f"{r['python_us']:.1f}",
+                   "{:.3f} ({:.3f} to {:.3f})".format(r["ratio"], *r["quartiles"]), f"{r['added_us']:.2f}"] for r in report["results"]])
+
+
 def over_a_list(report):
     of = {(r["job"], r["jobs"]): r for r in report["results"]}
     counts = sorted({count for _, count in of})
@@ -406,8 +413,8 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "list": (over_a_list, "list"),
-             "list on GPUs": (list_on_gpus, "list_gpus"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "python": (python, "python"),
+             "list": (over_a_list, "list"), "list on GPUs": (list_on_gpus, "list_gpus"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
              "fuzz": (fuzz, "fuzz")}}
 
 
