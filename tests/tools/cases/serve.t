@@ -35,6 +35,10 @@ $ printf '%s\n' '{"id":"early","pose":[0,0,0.95,0,0,0,1]}' '{"id":"scene","cloud
 $ printf '%s\n' '{"id":{"a":[1,null]},"pose":[5,0,0,0.95,0,0,0,1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --serve | grep -o '"id":.*volume"' && printf '%s\n' '[5,0,0,0.95,0,0,0,1]' | vpm-query --tool cube.vpmg --cloud wall.vpmc --serve | cut -d, -f2- | cmp - <(head -n 1 ids.out.jsonl | cut -d, -f3-)
 "id":{"a":[1,null]},"volume"
 
+# Solids stand where they were given, or move with a request.
+$ printf '%s\n' '{"id":1,"pose":[0,0,0.85,0,0,0,1]}' '{"id":2,"tool":[0,0,0.85,0,0,0,1],"solids":[[0.15,0,0.85,0,0,0,1]]}' > moved.jsonl; for o in "--poses moved.jsonl" --serve; do vpm-query --tool cube.vpmg --cloud wall.vpmc --solid cube.off@0.1,0,0.85,0,0,0,1 $o < moved.jsonl > answers${o:0:7}; done; cmp answers--poses answers--serve; python3 -c 'import json; print([round(json.loads(l)["volume"] * 1e6, 3) for l in open("answers--serve")])'
+[4000.0, 2000.0]
+
 # Each answer comes before the next request is written.
 $ cat > talk.py <<< 'import json, subprocess as s; p = s.Popen(["vpm-query", "--tool", "cube.vpmg", "--cloud", "wall.vpmc", "--serve"], stdin=s.PIPE, stdout=s.PIPE, text=True); ask = lambda q: (p.stdin.write(json.dumps(q) + "\n"), p.stdin.flush(), json.loads(p.stdout.readline()))[2]; print([ask({"id": k, "pose": [0, 0, 0.95 + k / 100, 0, 0, 0, 1]})["id"] for k in range(3)]); p.stdin.close(); print(p.wait())'
 $ python3 talk.py
