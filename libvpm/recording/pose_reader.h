@@ -14,8 +14,8 @@
 #include "libvpm/file/npy.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/remark.h"
+#include "libvpm/recording/mcap/ros_recording.h"
 #include "libvpm/recording/pose_parser.h"
-#include "libvpm/recording/ros_recording.h"
 
 namespace vpm {
 

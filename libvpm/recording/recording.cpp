@@ -14,8 +14,8 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/mcap/mcap_file.h"
+#include "libvpm/recording/mcap/ros_recording.h"
 #include "libvpm/recording/pose_reader.h"
-#include "libvpm/recording/ros_recording.h"
 #include "libvpm/recording/timed_path.h"
 
 namespace vpm {

@@ -8,7 +8,7 @@
 
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/text.h"
-#include "libvpm/recording/ros_recording.h"
+#include "libvpm/recording/mcap/ros_recording.h"
 #include "tools/common/error_text.h"
 #include "tools/query/solid_scene.h"
 

@@ -1,4 +1,4 @@
-#include "libvpm/recording/frame_tree.h"
+#include "libvpm/recording/mcap/frame_tree.h"
 
 #include <algorithm>
 #include <cmath>

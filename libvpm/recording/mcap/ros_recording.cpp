@@ -1,4 +1,4 @@
-#include "libvpm/recording/ros_recording.h"
+#include "libvpm/recording/mcap/ros_recording.h"
 
 #include <map>
 #include <memory>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "libvpm/file/text.h"
-#include "libvpm/recording/frame_tree.h"
+#include "libvpm/recording/mcap/frame_tree.h"
 #include "libvpm/recording/mcap/mcap_file.h"
 #include "libvpm/recording/mcap/messages.h"
 
