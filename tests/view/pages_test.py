@@ -327,6 +327,13 @@ class Query(PageTest):
             self.assert_shows(page, lines[step])
         self.assertEqual(len({line["frame"] for line in lines}), 3)
         self.assertGreater(lines[0]["volume"], lines[-1]["volume"])
+        # Steps before the first frame show none.
+        run("vpm-query", "--tool", "tool.vpmg", "--frames", "clouds", "--poses", "path.txt", "--rate", 30, "--frame-latency", 0.05, "--quiet",
+            "-o", "late.jsonl", "--view", "late.html")
+        page = self.open("late.html")
+        for step, shown in ((0, False), (3, True), (1, False)):
+            page.evaluate(f"vpm.setStep({step})")
+            self.assertEqual([self.layer(page, name)["visible"] for name in ("measured surface", "camera")], [shown, shown])
 
     def test_a_million_points_without_a_camera(self):
         write_points("million.ply", 1_000_000)
