@@ -117,6 +117,8 @@ SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters) 
                      certify(checked.solid, result.spheres, &checked.enclosure));
   Packing packing{std::move(result.spheres), checked.solid, made_by_library("vpm::pack")};
   packing.provenance.json()["solid_hash"] = content_hash(packing.solid);
+  packing.is_boundary =
+      !checked.enclosure.surface && checked.enclosure.faces_tell && checked.facts.inner_shells == 0;
   return HandleAccess::make<SpherePacking>(std::move(packing));
 }
 

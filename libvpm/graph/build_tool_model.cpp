@@ -165,7 +165,7 @@ double samples_per_length(std::uint32_t spheres) {
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<VoronoiQuality>* quality) {
   check(packing, options);
-  const Solid boundary = enclosed_surface(packing.solid);
+  const Solid boundary = packing.is_boundary ? packing.solid : enclosed_surface(packing.solid);
   const MassProperties mass = mass_properties(boundary);
   if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
   const Normalized n = normalize(packing, mass);

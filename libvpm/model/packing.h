@@ -18,6 +18,8 @@ struct Packing {
   // Tool, version, parameters, hash of the input; no clock time, so that equal runs give equal
   // files.
   file::Provenance provenance;
+  // True if who made it knows that the solid neither meets nor encloses itself. Files do not tell.
+  bool is_boundary = false;
 };
 
 // Reads a packing from a file, from standard input ("-"), or from bytes. Throws Error(refused) if

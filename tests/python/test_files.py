@@ -34,6 +34,21 @@ def test_files_come_back_with_their_bytes(tmp_path, tool, cloud):
         assert (tmp_path / name).read_bytes() == (tmp_path / ("b" + name)).read_bytes()
 
 
+@pytest.mark.parametrize("second", [None, 0.3 * CUBE, 0.3 * CUBE + 2, CUBE + 0.05])
+@pytest.mark.parametrize("turned", [False, True])
+def test_packings_in_memory_make_the_tools_of_their_files(tmp_path, second, turned):
+    """A cube alone, and with another one in it, a cavity where it is turned, beside it, and across it."""
+    if second is None:
+        corners, faces = CUBE, FACES
+    else:
+        corners, faces = np.vstack([CUBE, second]), np.vstack([FACES, (FACES[:, ::-1] if turned else FACES) + len(CUBE)])
+    packing = vpm.pack(vpm.solid_of((corners, faces)), spheres=30)
+    packing.write(tmp_path / "a.vpmp")
+    vpm.build_tool(packing).write(tmp_path / "a.vpmg")
+    vpm.build_tool(vpm.SpherePacking.read(tmp_path / "a.vpmp")).write(tmp_path / "b.vpmg")
+    assert (tmp_path / "a.vpmg").read_bytes() == (tmp_path / "b.vpmg").read_bytes()
+
+
 def test_meshes_of_other_libraries_are_taken(tool):
     mesh = types.SimpleNamespace(vertices=CUBE.astype(np.float32).astype(float), faces=FACES.astype(np.int32))
     assert vpm.solid_of(mesh).triangles == 12
