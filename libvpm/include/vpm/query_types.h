@@ -96,8 +96,8 @@ struct Contact {
   friend constexpr bool operator==(const Contact&, const Contact&) = default;
 };
 
-// What a camera knows of the tool, as fractions of its volume. With the part that is in the solid
-// (volume_fraction) they add up to 1.
+// What a camera knows of the tool, as fractions of its volume, wherever solids are. With the part
+// in the camera's own body, which is all of volume_fraction without solids, they add up to 1.
 struct Visibility {
   double seen_free = 0;    // before the surface that the camera sees
   double unseen = 0;       // hidden by the surface, and no part of the volume; or where nothing was
