@@ -241,6 +241,87 @@ TEST_F(Rig, NothingCountsThatACameraSawClearlyFree) {
   EXPECT_GT(clearly, 1000);
 }
 
+// Noisy images of cameras whose poses are wrong by millimetres, of which nobody knows the truth.
+RigBody wrong_rig() {
+  std::vector<DepthBody> images;
+  for (Camera camera : with_larger_pixels(ring_of_cameras(4), 2, 2)) {
+    const auto k = static_cast<double>(images.size());
+    const DepthImage image = synthetic::render_with_kinect_noise(*scene(), camera, images.size());
+    camera.to_world.translation += 0.004 * Vec3{std::sin(k), std::sin(2 * k + 1), std::sin(5 * k)};
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  return RigBody(std::move(images));
+}
+
+// However a tool lies, no more of it counts than what no camera saw free all about.
+TEST(RigOfAnyScene, NothingOfAToolCountsThatACameraSawClearlyFree) {
+  const RigBody rig = wrong_rig();
+  const RigSurface surface = rig.surface();
+  const Pose to_rig = inverse(rig.to_world());
+  constexpr double kSide = 0.1;
+  const ToolModel tool = testing::lattice_cube(kSide, 4, 3);
+  ToolQuery query(tool, {});
+  const std::vector<Vec3> inside = places(1000, kSide / 2);
+  const auto is_clearly_free = [&](const Vec3& x) {
+    const double apart = surface.classify_ball(to_rig * x, 0).margin;
+    const auto sees = [&](const DepthBody& image) {
+      const DepthSurface::BallClass around =
+          image.surface().classify_ball(inverse(image.to_world()) * x, apart);
+      return around.side == Side::free && DepthSurface::sight_of(around) == Sight::seen;
+    };
+    return std::ranges::any_of(rig.prepared().images(), sees);
+  };
+  int partly = 0;
+  for (const Vec3& at : places(150, 0.22)) {
+    const Pose pose{rotation_from_vector(9 * at), at};
+    const auto free = std::ranges::count_if(
+        inside, [&](const Vec3& place) { return is_clearly_free(pose * place); });
+    const double most = 1 - static_cast<double>(free) / static_cast<double>(inside.size());
+    const double found = query.run(AnyBody(rig), pose).volume_fraction;
+    EXPECT_LE(found, most + 0.04);
+    partly += found > 0.02 && most < 0.9;
+  }
+  EXPECT_GT(partly, 30);
+}
+
+// True if a place of a surface has no edge within so much, m.
+bool is_on_face(const synthetic::Surface& surface, const Vec3& at, const Vec3& normal,
+                double within) {
+  const auto goes_on = [&](const Vec3& way) {
+    const Vec3 beside = at + within * (way - dot(way, normal) * normal);
+    return dot(surface.gradient(beside - 1e-4 * normal), normal) > 0.99;
+  };
+  return std::ranges::all_of(
+      std::vector<Vec3>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+      goes_on);
+}
+
+// A camera that looks past a face from behind knows only that the face is somewhere before the
+// border of what it hides. Where another one sees the face that moves nothing, however far apart
+// readings of one surface may be, as under noise.
+TEST(RigOfAnyScene, SilhouettesMoveNoFaceThatIsSeen) {
+  const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(4), 2, 2);
+  const RigBody rig(images_of(*scene(), cameras));
+  RigSurface surface = rig.surface();
+  surface.most_agreement = 6 / cameras.front().intrinsics.fx;
+  std::vector<double> agreement(surface.agreement, surface.agreement + 16);
+  for (std::size_t pair = 0; pair < 16; ++pair)
+    if (pair % 5 != 0) agreement[pair] = surface.most_agreement;  // of different cameras
+  surface.agreement = agreement.data();
+  double sum = 0;
+  int count = 0;
+  for (const Vec3& x : places(60000, 0.17)) {
+    const double truth = scene()->distance(x);
+    if (std::fabs(truth) > 0.003) continue;
+    const Vec3 normal = scene()->gradient(x), foot = x - truth * normal;
+    if (!is_seen(*scene(), cameras, foot, normal) || !is_on_face(*scene(), foot, normal, 0.008))
+      continue;
+    sum += surface.sample(inverse(rig.to_world()) * x).distance - truth, ++count;
+  }
+  EXPECT_GT(count, 400);
+  EXPECT_LT(std::fabs(sum / count), 0.00005);  // m; a pixel is 3.4 mm wide
+}
+
 // However a box is turned: some of its faces are then seen along, by one camera or another.
 TEST(RigOfAnyScene, DistanceIsThatToTheSurfaceThatIsSeen) {
   const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(4), 2, 2);

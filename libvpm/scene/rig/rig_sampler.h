@@ -312,7 +312,10 @@ struct RigSampler {
                  most = agreement[own.camera * count + other.camera] * depth;
       if (!any(own.known & other.known & (absolute(apart) < most))) continue;
       const Real alike = likeness(apart, most, dot(other.normal, own.normal));
-      const Real counts = alike * other.weight;
+      // A silhouette ends what its camera hides; the surface may lie deeper, as one that is seen
+      // tells better.
+      const MaskOf<Real> is_told = own.is_silhouette | negated(other.is_silhouette);
+      const Real counts = is_told ? alike * other.weight : Real{};
       const MaskOf<Real> is_one = own.known & (counts > 0);
       if (!any(is_one)) continue;
       has_others |= is_one;
