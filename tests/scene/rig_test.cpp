@@ -322,6 +322,72 @@ TEST(RigOfAnyScene, SilhouettesMoveNoFaceThatIsSeen) {
   EXPECT_LT(std::fabs(sum / count), 0.00005);  // m; a pixel is 3.4 mm wide
 }
 
+// Unsets pixels in disks of 2 to 7 pixels about places in the middle of an image.
+void make_holes(DepthImage& image, std::uint64_t seed) {
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    synthetic::NormalNumbers numbers(seed, k);
+    const double u0 = image.width * (0.5 + 0.15 * numbers.next()),
+                 v0 = image.height * (0.5 + 0.15 * numbers.next()),
+                 radius = std::clamp(4 + 2 * numbers.next(), 2.0, 7.0);
+    for (std::uint32_t v = 0; v < image.height; ++v)
+      for (std::uint32_t u = 0; u < image.width; ++u)
+        if (std::hypot(u - u0, v - v0) < radius) image.depth[image.index(u, v)] = 0;
+  }
+}
+
+// Where a camera has not measured what others have before a place, its image around the hole tells
+// if it sees past that; nothing is then solid, or free, that is not so without the hole.
+TEST(RigOfAnyScene, SmallHolesChangeHardlyAnything) {
+  const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(2), 2, 2);
+  std::vector<DepthBody> whole, images;
+  for (const Camera& camera : cameras) {
+    DepthImage image = synthetic::render(*scene(), camera);
+    whole.emplace_back(make_cloud(image, camera, {}));
+    make_holes(image, images.size());
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  const RigBody all(std::move(whole)), rig(std::move(images));
+  const Pose to_rig = inverse(rig.to_world());
+  int known = 0, free = 0, solid = 0;
+  for (const Vec3& place : places(20000, 0.2)) {
+    const SurfaceSample truth = all.surface().sample(to_rig * place),
+                        seen = rig.surface().sample(to_rig * place);
+    if (!truth.known || !seen.known || std::fabs(truth.distance) < 0.01) continue;
+    ++known;
+    free += seen.distance > 0 && truth.distance < 0;
+    solid += seen.distance < 0 && truth.distance > 0;
+  }
+  EXPECT_GT(known, 10000);
+  EXPECT_LT(free, 0.002 * known);
+  EXPECT_LT(solid, 0.01 * known);
+}
+
+// A dark thing on a table that only one of two cameras measures is there, though the table is all
+// around the hole that it makes in the other's image.
+TEST(RigOfAnyScene, WhatOneCameraMeasuresIsNotSeenThroughAHoleOfAnother) {
+  const synthetic::SurfacePtr table = synthetic::make_wall({}, {0, 0, 1}),
+                              thing =
+                                  synthetic::make_block({0.03, 0.03, 0.03}, {{}, {0, 0, 0.015}}),
+                              both = synthetic::make_union({table, thing});
+  std::vector<DepthBody> images;
+  for (const Vec3& from : {Vec3{0.5, 0, 0.7}, {-0.5, 0.1, 0.7}}) {
+    Camera camera = synthetic::default_camera();
+    camera.to_world = testing::looking_at_origin(from);
+    DepthImage image = synthetic::render(*both, camera);
+    const DepthImage beyond = synthetic::render(*table, camera);
+    for (std::size_t k = 0; k < image.depth.size() && !images.empty(); ++k)
+      if (image.depth[k] != beyond.depth[k]) image.depth[k] = 0;
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  EXPECT_EQ(images[1].silhouettes().holes().fits().size(), 1U);
+  const RigBody rig(std::move(images));
+  for (const Vec3& off : places(500, 0.012)) {
+    const SurfaceSample seen =
+        rig.surface().sample(inverse(rig.to_world()) * (off + Vec3{0, 0, 0.015}));
+    EXPECT_TRUE(is_behind_surface(seen)) << off.x << ' ' << off.y << ' ' << off.z;
+  }
+}
+
 // However a box is turned: some of its faces are then seen along, by one camera or another.
 TEST(RigOfAnyScene, DistanceIsThatToTheSurfaceThatIsSeen) {
   const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(4), 2, 2);

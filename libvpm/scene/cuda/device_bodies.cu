@@ -78,8 +78,14 @@ DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
   for (std::size_t i = 0; i < count; ++i) {
     const ImageSilhouettes& found = rig.images()[i].silhouettes();
     cameras[i].image = images_.emplace_back(rig.images()[i].prepared()).surface();
-    cameras[i].silhouettes = {memory_.copy(found.pixels()), memory_.copy(found.nearest()),
-                              memory_.copy(found.sums()), cameras[i].silhouettes.columns};
+    cameras[i].silhouettes = {memory_.copy(found.pixels()),
+                              memory_.copy(found.nearest()),
+                              memory_.copy(found.sums()),
+                              cameras[i].silhouettes.columns,
+                              {}};
+    if (!found.holes().fits().empty())
+      cameras[i].silhouettes.holes = {memory_.copy(found.holes().fits()),
+                                      memory_.copy(found.holes().numbers())};
   }
   surface_.cameras = memory_.copy(cameras);
   surface_.agreement = memory_.copy(rig.agreement().of_pairs);

@@ -153,10 +153,6 @@ struct DepthSampler {
     return {is_in_image, static_cast<Mask>(is_in_image & is_known)};
   }
 
- private:
-  // Cosine between ray and normal below which the normal does not scale a distance.
-  static constexpr double kGrazing = 0.05;
-
   // Holds where a place is in the image, in pixels; 0 where it is not.
   template <class Real>
   struct Projection {
@@ -174,6 +170,10 @@ struct DepthSampler {
                                  (any_u + 0.5 < u_end) & (any_v + 0.5 < v_end);
     return {is_seen, is_seen ? any_u : zero, is_seen ? any_v : zero};
   }
+
+ private:
+  // Cosine between ray and normal below which the normal does not scale a distance.
+  static constexpr double kGrazing = 0.05;
 
   // Describes the image in the direction of a place.
   template <class Real>

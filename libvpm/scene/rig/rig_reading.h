@@ -20,7 +20,8 @@ struct RigCamera {
 template <class Real>
 struct RigReading {
   MaskOf<Real> known;          // nothing else means anything where it is false
-  MaskOf<Real> is_silhouette;  // the distance is that to a silhouette
+  MaskOf<Real> is_measured;    // false: the distance is that to the fit of a hole, and positive
+  MaskOf<Real> is_silhouette;  // the distance is that to a silhouette, or to a fit
   Real distance;               // m, signed as in SurfaceSampleOf; 0 where not known
   Real depth;                  // m, of the place
   Real foot_depth;             // m, of what is on its ray
@@ -43,17 +44,19 @@ struct RigReader {
     const Place at = camera.from_rig * x;
     const SurfaceSampleOf<Real> seen =
         camera.image.sample_and(at, [](const IntOf<Real>&, const IntOf<Real>&) {});
-    reading.known = seen.known;
-    if (!any(seen.known)) return;
     const Real zero{};
+    reading.known = reading.is_measured = seen.known;
+    if (!any(seen.known) && camera.silhouettes.holes.numbers == nullptr) return;
     reading.is_silhouette = MaskOf<Real>{};
     reading.distance = seen.known ? seen.distance : zero;
     reading.depth = at.z;
-    reading.foot_depth = seen.foot.z;
-    reading.below = at.z - seen.foot.z;
+    reading.foot_depth = seen.known ? seen.foot.z : zero;
+    reading.below = seen.known ? at.z - seen.foot.z : zero;
     reading.normal = choose(seen.known, seen.normal, Place{zero, zero, zero});
     reading.pixel = static_cast<IntOf<Real>>(seen.point);
-    read_silhouette(camera, at, reading);
+    if (camera.silhouettes.holes.numbers != nullptr && !all(seen.known))
+      read_hole(camera, at, reading);
+    if (any(seen.known)) read_silhouette(camera, at, reading);
   }
 
   // Sets the weight of a reading, and turns its normal into the rig's frame.
@@ -95,6 +98,64 @@ struct RigReader {
     MaskOf<Real> may_matter;  // the silhouette may be nearer than the surface that was read
   };
 
+  // Returns how far a place is before the surface that goes on in a hole, m; 0 where it is behind
+  // that, or the camera's image has no such hole there. `normal` receives the unit normal of that
+  // surface, the camera's frame, and `inverse_depth` its inverse depth, 1/m.
+  template <class Place>
+  [[gnu::always_inline]] static VPM_HD RealOf<Place> before_hole(const RigCamera& camera,
+                                                                 const Place& at, Place& normal,
+                                                                 RealOf<Place>& inverse_depth) {
+    using Real = RealOf<Place>;
+    const Real zero{};
+    const Intrinsics& k = camera.image.k;
+    const auto [is_in_image, u, v] = camera.image.project(at);
+    const IntOf<Real> number = gather(camera.silhouettes.holes.numbers,
+                                      truncated(v + 0.5) * camera.image.width + truncated(u + 0.5));
+    const MaskOf<Real> is_hole = is_in_image & widen_mask(number > 0);
+    if (!any(is_hole)) return zero;
+    const HoleFit* const fits = camera.silhouettes.holes.fits;
+    const auto get = [&](float HoleFit::*member) {
+      const IntOf<Real> none{};
+      return gather(number > 0 ? number - 1 : none,
+                    [&](std::int32_t i) { return fits[i].*member; });
+    };
+    const Real x = u - get(&HoleFit::u), y = v - get(&HoleFit::v);
+    const Real d = get(&HoleFit::d), e = get(&HoleFit::e), f = get(&HoleFit::f);
+    const Real per_u = get(&HoleFit::b) + 2 * d * x + e * y,
+               per_v = get(&HoleFit::c) + e * x + 2 * f * y;
+    inverse_depth =
+        get(&HoleFit::a) + (get(&HoleFit::b) + d * x + e * y) * x + (get(&HoleFit::c) + f * y) * y;
+    // The plane through that point: inverse depth times depth is 1 on it.
+    const Place along{k.fx * per_u, k.fy * per_v,
+                      inverse_depth - per_u * (u - k.cx) - per_v * (v - k.cy)};
+    const Real length = square_root(squared_norm(along));
+    normal =
+        Place{quotient(-along.x, length), quotient(-along.y, length), quotient(-along.z, length)};
+    const Real before = quotient(1 - inverse_depth * at.z, length);
+    return is_hole & (inverse_depth > 0) & (before > 0) ? before : zero;
+  }
+
+  // Takes the surface that goes on in a hole for what is measured there, of places before it.
+  template <class Place>
+  [[gnu::always_inline]] static VPM_HD void read_hole(const RigCamera& camera, const Place& at,
+                                                      RigReading<RealOf<Place>>& reading) {
+    using Real = RealOf<Place>;
+    Place normal = reading.normal;
+    Real inverse_depth = Real{} + 1;
+    const Real before = before_hole(camera, at, normal, inverse_depth);
+    const MaskOf<Real> is_before = negated(reading.is_measured) & (before > 0);
+    if (!any(is_before)) return;
+    const Real foot_depth = quotient(1, inverse_depth);
+    const IntOf<Real> none{};
+    reading.known |= is_before;
+    reading.is_silhouette |= is_before;
+    reading.distance = is_before ? before : reading.distance;
+    reading.foot_depth = is_before ? foot_depth : reading.foot_depth;
+    reading.below = is_before ? at.z - foot_depth : reading.below;
+    reading.normal = choose(is_before, normal, reading.normal);
+    if (!any(reading.is_measured)) reading.pixel = none;
+  }
+
   // Takes the nearest silhouette for the surface where that is nearer to a place: from a free
   // place, the side of what hides what is beyond; from a place behind, the way out to what was seen
   // beyond it.
@@ -105,7 +166,7 @@ struct RigReader {
     using Real = RealOf<Place>;
     using Mask = MaskOf<Real>;
     const IntOf<Real> number = gather(camera.silhouettes.nearest, reading.pixel);
-    const Mask is_known = reading.known & widen_mask(number > 0);
+    const Mask is_known = reading.is_measured & widen_mask(number > 0);
     if (!any(is_known)) return;
     const Beside<Real> beside = find_beside(camera, at, reading, number);
     const Mask may_matter = is_known & beside.may_matter;
@@ -125,15 +186,16 @@ struct RigReader {
     const Mask is_way = may_matter & is_behind & negated(is_far) &
                         (get(camera, beside.index, &SilhouettePixel::beyond) > at.z) &
                         (to_beyond > reading.distance);
-    reading.is_silhouette = is_nearer | is_way;
-    if (!any(reading.is_silhouette)) return;
+    const Mask is_beside = is_nearer | is_way;
+    if (!any(is_beside)) return;
+    reading.is_silhouette |= is_beside;
     reading.distance = is_nearer ? to_side : is_way ? to_beyond : reading.distance;
     reading.below = is_way ? zero : reading.below;
     const Real length = square_root(squared_norm(at));
     const Place ray{quotient(at.x, length), quotient(at.y, length), quotient(at.z, length)};
     const Place out{out_u, out_v, zero};
-    reading.normal = choose(reading.is_silhouette, normalized_or_zero(out - dot(out, ray) * ray),
-                            reading.normal);
+    reading.normal =
+        choose(is_beside, normalized_or_zero(out - dot(out, ray) * ray), reading.normal);
   }
 
   // Finds how far places are from the nearest silhouette pixels, of which `number` is one more than

@@ -141,19 +141,50 @@ struct RigSampler {
                                                       MaskOf<RealOf<Place>>& is_decided) const {
     std::int32_t found = 0;
     known = is_decided = MaskOf<RealOf<Place>>{};
+    MaskOf<RealOf<Place>> has_fits{};
     for (std::int32_t i = 0; i < count; ++i) {
       if ((some >> i & 1) == 0) continue;
       RigReading<RealOf<Place>>& reading = readings[found];
       RigReader::read(cameras[i], x, reading);
       if (!any(reading.known)) continue;
       reading.camera = i;
-      known |= reading.known;
-      is_decided |= reading.known & negated(is_well_before(reading));
+      known |= reading.is_measured;
+      has_fits |= reading.known & negated(reading.is_measured);
+      is_decided |= reading.is_measured & negated(is_well_before(reading));
       ++found;
     }
     for (std::int32_t k = 0; k < found; ++k)
       readings[k].known &= negated(is_decided & is_well_before(readings[k]));
+    if (any(has_fits)) leave_out_fits(x, known, readings, found);
     return found;
+  }
+  // Leaves out fits of holes where no camera has measured anything, and where one shows a surface
+  // that the fit's camera would see past: it has not measured something there.
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD void leave_out_fits(const Place& x,
+                                                    const MaskOf<RealOf<Place>>& known,
+                                                    RigReading<RealOf<Place>>* readings,
+                                                    std::int32_t found) const {
+    using Real = RealOf<Place>;
+    for (std::int32_t k = 0; k < found; ++k) {
+      RigReading<Real>& fit = readings[k];
+      const MaskOf<Real> is_fit = fit.known & negated(fit.is_measured);
+      if (!any(is_fit)) continue;
+      fit.known &= known | fit.is_measured;
+      for (std::int32_t j = 0; j < found; ++j) {
+        const RigReading<Real>& other = readings[j];
+        const MaskOf<Real> is_behind =
+            is_fit & other.known & other.is_measured & (other.distance < 0);
+        if (!any(is_behind)) continue;
+        const RigCamera& camera = cameras[other.camera];
+        const Place at = camera.from_rig * x;
+        const Place foot = camera.to_rig * (quotient(other.foot_depth, at.z) * at);
+        RigReading<Real> there{};
+        RigReader::read(cameras[fit.camera], foot, there);
+        const Real most = agreement[fit.camera * count + other.camera] * fit.depth;
+        fit.known &= negated(is_behind & there.known & (there.distance > most));
+      }
+    }
   }
   // True where a camera has something well before a place.
   template <class Real>
@@ -181,13 +212,14 @@ struct RigSampler {
     for (std::int32_t k = 0; k < found; ++k) {
       const RigReading<Real>& reading = readings[k];
       const Real length = absolute(reading.distance);
-      const MaskOf<Real> is_nearer = reading.known & (length < nearest.length);
+      const MaskOf<Real> is_measured = reading.known & reading.is_measured;
+      const MaskOf<Real> is_nearer = is_measured & (length < nearest.length);
       nearest.length = is_nearer ? length : nearest.length;
       nearest.distance = is_nearer ? reading.distance : nearest.distance;
       nearest.half_pixel = is_nearer ? half_pixel(reading) : nearest.half_pixel;
-      nearest.greatest = reading.known & (reading.distance > nearest.greatest) ? reading.distance
-                                                                               : nearest.greatest;
-      nearest.is_free |= reading.known & (reading.distance > 0);
+      nearest.greatest =
+          is_measured & (reading.distance > nearest.greatest) ? reading.distance : nearest.greatest;
+      nearest.is_free |= is_measured & (reading.distance > 0);
       depth = reading.known & (reading.depth > depth) ? reading.depth : depth;
     }
     nearest.apart = most_agreement * depth;
@@ -221,8 +253,9 @@ struct RigSampler {
     MaskOf<Real> has_normal{};
     for (std::int32_t k = 0; k < found; ++k) {
       RigReading<Real>& reading = readings[k];
-      const MaskOf<Real> is_nearest =
-          reading.known & (absolute(reading.distance) == nearest.length) & negated(has_normal);
+      const MaskOf<Real> is_nearest = reading.known & reading.is_measured &
+                                      (absolute(reading.distance) == nearest.length) &
+                                      negated(has_normal);
       reading.known &= is_nearest | (reading.distance > least);
       if (!any(reading.known)) continue;
       RigReader::weigh(cameras[reading.camera], x, reading);
@@ -341,6 +374,7 @@ struct RigSampler {
     for (std::int32_t i = 0; i < count; ++i) {
       RigReading<Real>& way = ways[found];
       RigReader::read(cameras[i], x, way);
+      way.known &= way.is_measured;
       if (!any(way.known)) continue;
       way.distance = way.distance < 0 ? -way.distance : Real{};  // free, but for disagreement
       least = way.known & (way.distance < least) ? way.distance : least;

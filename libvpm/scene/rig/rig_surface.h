@@ -64,7 +64,7 @@ struct RigSurface : RigSampler {
       if (own.side == Side::free && of_camera == Sight::seen && is_seen_free(image, at, in_ball))
         return free_ball(in_ball, Sight::seen);
       sight = joined(sight, of_camera);
-      if (of_camera == Sight::hole) continue;
+      if (of_camera == Sight::hole && !has_fits(cameras[i], own)) continue;
       const CameraSet bit = CameraSet{1} << i;
       in_ball.point |= bit;
       deciding |= own.side == Side::free ? 0 : bit;
@@ -172,6 +172,11 @@ struct RigSurface : RigSampler {
     DepthSurface::BallClass own = image.classify_ball(at, radius);
     own.side = image.side_by_plane(own, at, radius);
     return own;
+  }
+  // True if the fits of a camera's holes may tell of places in a ball.
+  static VPM_HD bool has_fits(const RigCamera& camera, const DepthSurface::BallClass& own) {
+    return camera.silhouettes.holes.numbers != nullptr &&
+           camera.silhouettes.may_be_near(own.pixels);
   }
   // True if a camera has seen all of a larger ball free, so that no mean of readings in the ball is
   // behind the surface.

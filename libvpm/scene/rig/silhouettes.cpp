@@ -231,7 +231,7 @@ class NearestInRow {
 
 }  // namespace
 
-ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) {
+ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
   const FilledImage all = filled(image);
   std::vector<std::vector<SilhouettePixel>> of_bands(
       static_cast<std::size_t>(bands_of(image.height)));
@@ -279,6 +279,13 @@ void ImageSilhouettes::sum_tiles(int width, int height) {
     std::uint32_t* const row = sums_.data() + ((v >> Silhouettes::kTileShift) + 1) * columns + 1;
     for (std::size_t u = 0; u < static_cast<std::size_t>(width); ++u)
       row[u >> Silhouettes::kTileShift] |= nearest_[pixel++] != 0 ? 1U : 0U;
+  }
+  for (std::size_t k = 0; k < holes_.numbers().size(); ++k) {
+    const std::size_t v = k / static_cast<std::size_t>(width),
+                      u = k % static_cast<std::size_t>(width);
+    if (holes_.numbers()[k] != 0)
+      sums_[((v >> Silhouettes::kTileShift) + 1) * columns + (u >> Silhouettes::kTileShift) + 1] =
+          1;
   }
   for (std::size_t at = columns + 1; at < sums_.size(); ++at) {
     if (at % columns == 0) continue;

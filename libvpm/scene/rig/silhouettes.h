@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libvpm/scene/depth/depth_sampler.h"
+#include "libvpm/scene/rig/hole_fits.h"
 
 namespace vpm {
 
@@ -29,11 +30,12 @@ struct Silhouettes {
   // none is within kSilhouetteReach.
   const std::uint32_t* nearest = nullptr;
   // Summed-area table of tiles: at (u, v), u the faster, the number of tiles left of u and above v
-  // that have a pixel with a nearest silhouette.
+  // that have a pixel with a nearest silhouette, or with the fit of a hole.
   const std::uint32_t* sums = nullptr;
   std::int32_t columns = 0;  // of the table
+  HoleFits holes;
 
-  // False if no pixel of a rectangle has a nearest silhouette.
+  // False if no pixel of a rectangle has a nearest silhouette or the fit of a hole.
   VPM_HD bool may_be_near(const PixelRectangle& p) const {
     const std::int32_t u0 = p.u0 >> kTileShift, u1 = (p.u1 >> kTileShift) + 1;
     const std::int32_t above = (p.v0 >> kTileShift) * columns,
@@ -48,14 +50,17 @@ inline constexpr int kSilhouetteReach = 24;
 class ImageSilhouettes {
  public:
   ImageSilhouettes() = default;
-  // Finds the silhouettes of an image. A hole within three pixels of a silhouette counts as what is
-  // beyond it; what was removed tells nothing of what is there.
+  // Finds the silhouettes of an image, and fits its holes. A hole within three pixels of a
+  // silhouette counts as what is beyond it; what was removed tells nothing of what is there.
   explicit ImageSilhouettes(const DepthSampler& image);
 
-  Silhouettes view() const { return {pixels_.data(), nearest_.data(), sums_.data(), columns_}; }
+  Silhouettes view() const {
+    return {pixels_.data(), nearest_.data(), sums_.data(), columns_, holes_.view()};
+  }
   const std::vector<SilhouettePixel>& pixels() const { return pixels_; }
   const std::vector<std::uint32_t>& nearest() const { return nearest_; }
   const std::vector<std::uint32_t>& sums() const { return sums_; }
+  const ImageHoles& holes() const { return holes_; }
 
  private:
   void find_nearest(const DepthSampler& image);
@@ -65,6 +70,7 @@ class ImageSilhouettes {
   std::vector<std::uint32_t> nearest_;
   std::vector<std::uint32_t> sums_;
   std::int32_t columns_ = 0;
+  ImageHoles holes_;
 };
 
 }  // namespace vpm
