@@ -71,6 +71,10 @@ std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images) {
   return check_cameras(depth_images_of(images));
 }
 
+std::optional<Remark> uncertain_thickness(std::span<const Body> images) {
+  return check_thickness(depth_images_of(images));
+}
+
 Registration register_cameras(std::span<const Body> images) {
   return register_images(depth_images_of(images));
 }

@@ -523,6 +523,18 @@ void bind_setup_check(py::module_& module) {
       "vpm.Remark that says why; None where there is none.\n\nimages: depth images that "
       "Body.of_cameras() is to take. Takes a core 20 ms for four. Raises ArgumentError for a body "
       "that is no depth image. Thread-safe.");
+  module.def(
+      "uncertain_thickness",
+      [](const std::vector<Body>& images) {
+        const py::gil_scoped_release unlocked;
+        return uncertain_thickness(images);
+      },
+      py::arg("images"),
+      "Returns a vpm.Remark if depth images show both sides of a thing that is thinner than twice "
+      "what their cameras disagree by, so that its volume is uncertain by half or more; else None."
+      "\n\nimages: as for doubted_camera(). Takes a core 20 ms for four. Raises ArgumentError for "
+      "a "
+      "body that is no depth image. Thread-safe.");
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "libvpm/core/median.h"
+#include "libvpm/scene/rig/agreement.h"
 #include "libvpm/scene/rig/clear_pixel.h"
+#include "libvpm/scene/rig/prepared_rig.h"
 
 namespace vpm {
 namespace {
@@ -171,7 +173,69 @@ std::optional<DoubtedCamera> far_camera(const std::vector<ComparedCamera>& camer
   return found;
 }
 
+constexpr double kOpposite = -0.5;  // greatest cosine between normals of two sides
+constexpr double kThin = 2;         // deviations: thinner is uncertain by half or more
+constexpr double kNotThick = 4;     // deviations: noise may make that seem thin here and there
+
+// What some pixels show to be thin, m, and by how much the cameras on both sides disagree there, m.
+struct ThinPlaces {
+  std::vector<double> thicknesses, deviations;
+  std::size_t not_thick = 0;  // of these and others
+};
+
+// Adds places that one camera shows and that another has behind a surface which faces the other
+// way, where they are no further apart than some deviations, per depth.
+void add_thin_places(const RigCamera& shows, const RigCamera& other, double deviation,
+                     ThinPlaces& thin) {
+  const DepthSurface& image = shows.image;
+  const Pose to_other = relative_to(other.to_rig, shows.to_rig);
+  for_clear_pixels(image, step_of_comparison(image), [&](int u, int v, const Vec3& place) {
+    const Vec3 normal = widen(image.normals[v * image.width + u]), at = to_other * place;
+    if (!(at.z > 0) || !(-dot(normal, place) > kFrontal * norm(place))) return;
+    const SurfaceSample seen = other.image.sample(at);
+    const double apart = deviation * std::max(place.z, at.z);
+    if (!seen.known || !(std::fabs(seen.distance) < kNotThick * apart) ||
+        !(dot(seen.normal, to_other.rotation * normal) < kOpposite) ||
+        !(-dot(seen.normal, at) > kFrontal * norm(at)))
+      return;
+    ++thin.not_thick;
+    if (!(std::fabs(seen.distance) < kThin * apart)) return;
+    thin.thicknesses.push_back(std::fabs(seen.distance));
+    thin.deviations.push_back(apart);
+  });
+}
+
 }  // namespace
+
+std::optional<Remark> check_thickness(std::span<const DepthBody> images) {
+  const std::vector<DepthBody> different = different_images({images.begin(), images.end()});
+  std::vector<RigCamera> cameras;
+  for (const DepthBody& body : different) {
+    const Pose to_rig = relative_to(different.front().to_world(), body.to_world());
+    cameras.push_back({body.surface(), {}, inverse(to_rig), to_rig});
+  }
+  const std::size_t all = cameras.size();
+  std::vector<std::optional<double>> deviations(all * all);
+  double largest = 0;
+  for (std::size_t pair = 0; pair < all * all; ++pair) {
+    const std::size_t i = pair / all, j = pair % all;
+    deviations[pair] = i < j ? deviation_between(cameras[i], cameras[j]) : deviations[j * all + i];
+    largest = std::max(largest, deviations[pair].value_or(0));
+  }
+  ThinPlaces thin;  // none where no two cameras share a surface
+  for (std::size_t pair = 0; pair < all * all; ++pair) {
+    const std::size_t i = pair / all, j = pair % all;
+    if (i != j) add_thin_places(cameras[i], cameras[j], deviations[pair].value_or(largest), thin);
+  }
+  const std::size_t count = thin.thicknesses.size();
+  if (count < kFew || 2 * count < thin.not_thick) return std::nullopt;
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "something about %.1f mm thin is seen from both sides by cameras that disagree by "
+                "%.1f mm: how much of it is in the way is uncertain; calibrate them better",
+                1e3 * median(thin.thicknesses), 1e3 * median(thin.deviations));
+  return Remark{true, text};
+}
 
 std::optional<DoubtedCamera> check_cameras(std::span<const DepthBody> images) {
   std::vector<ComparedCamera> cameras;

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "tests/query/ring_of_cameras.h"
@@ -120,6 +122,38 @@ TEST(CamerasCheck, FindsAPoseThatMakesACameraSeeThroughWhatOthersShow) {
     ASSERT_TRUE(said);
     EXPECT_TRUE(said->remark.is_warning);
   }
+}
+
+// Returns images of a plate that four cameras show from both sides, with poses that are wrong by so
+// much, m, and noise or none.
+std::vector<DepthBody> images_of_plate(double thickness, double wrong_by, bool has_noise) {
+  const synthetic::SurfacePtr surface = synthetic::make_union(
+      {synthetic::make_block({0.3, thickness, 0.25}, {rotation_from_vector({0.2, 0.1, 0.7}), {}}),
+       synthetic::make_inverted_ball({}, 1.5)});
+  std::vector<DepthBody> images;
+  for (Camera camera : ring_of_cameras(4)) {
+    const auto k = static_cast<double>(images.size());
+    const DepthImage image =
+        has_noise ? synthetic::render_with_kinect_noise(*surface, camera, images.size())
+                  : synthetic::render(*surface, camera);
+    camera.to_world.translation +=
+        wrong_by * normalized_or_zero({std::sin(k), std::sin(3 * k + 1), std::cos(5 * k)});
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  return images;
+}
+
+TEST(ThicknessCheck, SaysThatThinThingsAreUncertainWhereCamerasDisagree) {
+  EXPECT_FALSE(check_thickness(images_of_plate(0.004, 0, false)));
+  EXPECT_FALSE(check_thickness(images_of_plate(0.004, 0, true)));
+  EXPECT_FALSE(check_thickness(images_of_plate(0.06, 0.005, false)));
+  std::vector<DepthBody> images = images_of_plate(0.004, 0.005, false);
+  const std::optional<Remark> said = check_thickness(images);
+  ASSERT_TRUE(said);
+  EXPECT_TRUE(said->is_warning);
+  std::swap(images[0], images[2]);
+  images.push_back(images[1]);
+  EXPECT_EQ(check_thickness(images)->text, said->text);
 }
 
 }  // namespace

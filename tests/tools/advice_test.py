@@ -74,6 +74,11 @@ UNTRIED = [
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
         "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),
+    ("stands in a transcript: cases/cameras.t, replay_cameras.t", [
+        "how much of it is in the way is uncertain; calibrate them better", "--register makes the images of cameras agree: give several --frames",
+        "--register does not move clouds that keep their poses", "give the depth images, or --cloud for each camera",
+        "--register: no depth image can be used",
+    ]),
     ("stands in a transcript: cases/mcap.t", [
         "give its file to vpm-normals, or to vpm-query --frames", "name frames that it connects, or give the poses in a file",
         "`topic` is for recordings in MCAP: leave it out",

@@ -48,6 +48,11 @@ std::vector<Body> bodies_of_clouds(const std::vector<NamedCloud>& clouds, Denois
   return bodies;
 }
 
+// Says what is too thin for how well cameras on its two sides agree.
+void say_if_uncertain(const Program& program, const std::vector<Body>& images) {
+  if (const std::optional<Remark> remark = uncertain_thickness(images)) say(program, {*remark});
+}
+
 // Moves the cameras of clouds until their images agree. One alone, which a request has put in the
 // place of others, stays.
 void move_to_agree(const QuerySetup& setup, std::vector<NamedCloud>& clouds) {
@@ -61,12 +66,11 @@ void move_to_agree(const QuerySetup& setup, std::vector<NamedCloud>& clouds) {
     told.push_back(cloud.camera()->to_world);
   }
   const std::vector<Body> images = bodies_of_clouds(clouds, setup.points);
-  if (const auto doubted = doubted_camera(images); doubted && doubted->remark.is_warning)
-    return setup.program.note(
-        "--register: no camera is moved, since one is far from where its pose tells");
-  const std::vector<Pose> poses = registered_poses(setup.program, names, told, images);
+  const Registration found = registered(setup.program, names, told, images);
   for (std::size_t k = 0; k < clouds.size(); ++k)
-    clouds[k].cloud = clouds[k].cloud.seen_from(poses[k]);
+    clouds[k].cloud = clouds[k].cloud.seen_from(found.to_world[k]);
+  // Cameras on two sides of a thing may agree with those on their own side alone.
+  if (found.observable < found.motions) say_if_uncertain(setup.program, images);
 }
 
 }  // namespace
@@ -95,6 +99,8 @@ CloudScene::CloudScene(QuerySetup& setup, std::vector<NamedCloud> clouds) : setu
 void CloudScene::say_at_start(const std::vector<Body>& images,
                               const std::vector<NamedCloud>& clouds) {
   const auto doubted = images.size() > 1 ? doubted_camera(images) : std::nullopt;
+  if (images.size() > 1 && !doubted && !setup_.arguments.registers)
+    say_if_uncertain(setup_.program, images);
   const Remarks doubts = doubted ? Remarks{doubted->remark} : remarks();
   if (doubted)
     say(setup_.program, clouds[doubted->camera].name, doubts);

@@ -6,7 +6,12 @@
 #include <cstdio>
 #include <string>
 
+#include "libvpm/api/handle_access.h"
+#include "libvpm/cloud/normals.h"
+#include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/recording/frame_feed.h"
+#include "libvpm/scene/any_body.h"
 #include "tools/common/error_text.h"
 #include "tools/query/solid_scene.h"
 
@@ -33,8 +38,12 @@ std::string text_of(const Pose& pose) {
 
 }  // namespace
 
-std::vector<Pose> registered_poses(const Program& program, const std::vector<std::string>& names,
-                                   const std::vector<Pose>& told, const std::vector<Body>& images) {
+Registration registered(const Program& program, const std::vector<std::string>& names,
+                        const std::vector<Pose>& told, const std::vector<Body>& images) {
+  if (const auto doubted = doubted_camera(images); doubted && doubted->remark.is_warning) {
+    program.note("--register: no camera is moved, since one is far from where its pose tells");
+    return {told};
+  }
   const Registration found = naming("--register", [&] { return register_cameras(images); });
   constexpr double kMillimetre = 1e3, kDegree = 180 / 3.14159265358979323846;
   char text[300];
@@ -51,7 +60,51 @@ std::vector<Pose> registered_poses(const Program& program, const std::vector<std
                   kMillimetre * norm(now.translation - told[k].translation), kDegree * norm(turn));
     program.note(names[k] + text + text_of(now));
   }
-  return found.to_world;
+  return found;
+}
+
+namespace {
+
+// Returns the first depth image of a recording that can be used.
+CloudSensor first_image(const std::string& name, std::size_t source, const ImportOptions& import,
+                        const Recording& recording) {
+  for (const RecordedFrame& frame : recording.frames) {
+    if (frame.source != source || frame.is_lost) continue;
+    if (is_ready_cloud(frame))
+      throw Error(ErrorKind::refused, "--register does not move clouds that keep their poses",
+                  frame.path, "give the depth images, or --cloud for each camera");
+    try {
+      if (ImportedScan scan = read_frame(frame, import); scan.image) return *std::move(scan.image);
+    } catch (const Error& fault) {
+      if (fault.kind() != ErrorKind::refused) throw;
+    }
+  }
+  throw Error(ErrorKind::refused, "--register: no depth image can be used", name);
+}
+
+}  // namespace
+
+void move_to_agree(const Program& program, const std::vector<std::string>& names,
+                   const ImportOptions& import, Recording& recording) {
+  std::vector<Pose> told;
+  std::vector<Body> images;
+  for (std::size_t source = 0; source < names.size(); ++source) {
+    const CloudSensor image = first_image(names[source], source, import, recording);
+    told.push_back(image.camera.to_world);
+    images.push_back(HandleAccess::make<Body>(
+        AnyBody(DepthBody(make_cloud(image.depth, image.camera, import.normals)))));
+  }
+  const std::vector<Pose> now = registered(program, names, told, images).to_world;
+  for (RecordedFrame& frame : recording.frames) {
+    const Pose& first = told[frame.source];
+    const Pose moved = relative_to(first, now[frame.source]);  // in the camera's frame
+    const bool stands = !frame.camera || (frame.camera->translation == first.translation &&
+                                          frame.camera->rotation.row0 == first.rotation.row0 &&
+                                          frame.camera->rotation.row1 == first.rotation.row1);
+    frame.camera = stands ? now[frame.source]
+                          : Pose{exact_rotation(frame.camera->rotation * moved.rotation),
+                                 *frame.camera * moved.translation};
+  }
 }
 
 }  // namespace vpm::tools

@@ -73,6 +73,13 @@ struct DoubtedCamera {
 // for four images. Thread-safe. Throws Error(invalid_argument) for a body that is no depth image.
 VPM_API std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images);
 
+// Compares depth images of several cameras, which Body::of_cameras() is to take. Returns a warning
+// if some show both sides of a thing that is thinner than twice the deviation, robustly, of these
+// cameras where they see one surface: its volume is then uncertain by half or more. Otherwise, and
+// where cameras agree well, returns nothing. Takes a core 20 ms for four images. Thread-safe.
+// Throws Error(invalid_argument) for a body that is no depth image.
+VPM_API std::optional<Remark> uncertain_thickness(std::span<const Body> images);
+
 // Where several cameras are by what their images show.
 struct Registration {
   std::vector<Pose> to_world;    // of each image's camera; PointCloud::seen_from() takes it

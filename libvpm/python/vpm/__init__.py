@@ -53,6 +53,7 @@ from ._vpm import (
     register_cameras,
     set_thread_count,
     stable_rate,
+    uncertain_thickness,
 )
 
 __all__ = [
@@ -61,7 +62,7 @@ __all__ = [
     "Scene", "SetupCheck", "SetupWarning", "SolidBody", "SolidMesh", "SolidRemover", "SpherePacking", "Tool", "ToolLevel",
     "UnavailableError", "View", "VirtualCoupling", "WriteError", "build_tool", "coupling_limits", "critical_mass",
     "cuda_device_count", "device_name", "doubted_camera", "import_cloud", "import_depth", "make_tool", "overlap",
-    "pack", "register_cameras", "set_thread_count", "solid_of", "stable_rate",
+    "pack", "register_cameras", "set_thread_count", "solid_of", "stable_rate", "uncertain_thickness",
 ]
 
 

@@ -21,10 +21,10 @@ struct ClearPixel {
   double depth = 0;
 };
 
-std::vector<ClearPixel> clear_pixels(const RigCamera& camera) {
+std::vector<ClearPixel> clear_pixels(const RigCamera& camera, std::int32_t step) {
   std::vector<ClearPixel> pixels;
   const DepthSurface& image = camera.image;
-  for_clear_pixels(image, kStep, [&](std::int32_t u, std::int32_t v, const Vec3& at) {
+  for_clear_pixels(image, step, [&](std::int32_t u, std::int32_t v, const Vec3& at) {
     const Vec3 normal = widen(image.normals[v * image.width + u]);
     if (-dot(normal, at) > kFrontal * norm(at))
       pixels.push_back({camera.to_rig * at, camera.to_rig.rotation * normal, at.z});
@@ -84,13 +84,21 @@ bool is_clear_pixel(const DepthSurface& image, std::int32_t u, std::int32_t v) {
   return true;
 }
 
+std::optional<double> deviation_between(const RigCamera& one, const RigCamera& other) {
+  std::vector<Deviation> deviations;
+  add_deviations(clear_pixels(one, step_of_comparison(one.image)), other, deviations);
+  add_deviations(clear_pixels(other, step_of_comparison(other.image)), one, deviations);
+  if (deviations.size() <= kFewReadings) return std::nullopt;
+  return deviation_of(deviations);
+}
+
 RigAgreement agreement_of(std::span<const RigCamera> cameras) {
   constexpr double kUnknown = -1;
   const std::size_t count = cameras.size();
   std::vector<std::vector<ClearPixel>> pixels;
   RigAgreement agreement;
   agreement.of_pairs.assign(count * count, kUnknown);
-  for (const RigCamera& camera : cameras) pixels.push_back(clear_pixels(camera));
+  for (const RigCamera& camera : cameras) pixels.push_back(clear_pixels(camera, kStep));
   double largest = 0;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {

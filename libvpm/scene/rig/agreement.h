@@ -2,6 +2,7 @@
 // noise, and what is wrong with the cameras' poses.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,5 +25,9 @@ struct RigAgreement {
 };
 
 RigAgreement agreement_of(std::span<const RigCamera> cameras);
+
+// Returns the robust deviation, per depth, of the nearer half of what two cameras both see clearly;
+// nothing if that is little.
+std::optional<double> deviation_between(const RigCamera& one, const RigCamera& other);
 
 }  // namespace vpm
