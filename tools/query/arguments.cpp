@@ -70,8 +70,8 @@ void declare_inputs(CLI::App& app, Arguments& a) {
       ->option_text("CLOUD");
   app.add_flag(
       "--register", a.registers,
-      "Move the cameras of several --cloud by so little that their images agree, as far as "
-      "these tell, and say by how much");
+      "Move the cameras of several --cloud, or by the first images of several --frames, by so "
+      "little that their images agree, as far as these tell, and say by how much");
   app.add_option(
          "--solid", a.solids,
          "Tool model (.vpmg) or mesh of a solid in the scene, with its pose after an @ where "

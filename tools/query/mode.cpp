@@ -32,7 +32,7 @@ constexpr Row kTable[] = {
     {"--cloud",
      {scene, scene, scene, no, scene, no, yes, no, yes},
      "give the .vpmc that vpm-normals wrote, or --solid or --frames"},
-    {"--register", {yes, yes, yes, no, yes, no, yes, no, yes}},
+    {"--register", {yes, yes, yes, yes, yes, yes, yes, no, yes}},
     {"--solid", {scene, scene, scene, yes, scene, yes, yes, no, yes}},
     {"--bodies", {yes, yes, no, no, no, no, no, no}},
     {"--contacts", {yes, yes, no, yes, yes, yes, yes, yes, yes}},

@@ -31,6 +31,7 @@
 #include "tools/query/frame_removal.h"
 #include "tools/query/mode.h"
 #include "tools/query/query_report.h"
+#include "tools/query/registration.h"
 #include "tools/query/replay_report.h"
 #include "tools/query/result_output.h"
 #include "tools/query/tool_paths.h"
@@ -195,6 +196,11 @@ Replay::Replay(const QuerySetup& setup, double rate)
   schedule_ = {rate, paths_.steps(), start_time(), arguments_.frame_latency,
                arguments_.repeat_frames};
   begin_removal();
+  if (setup.arguments.registers) {
+    if (recording_.sources < 2)
+      refuse_usage("--register makes the images of cameras agree: give several --frames");
+    move_to_agree(program_, arguments_.frames, import_, recording_);
+  }
   find_first_body();
 }
 
