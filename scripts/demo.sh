@@ -5,10 +5,9 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-install_packages "${packages[@]}"
-install_meanwhile "${picture_packages[@]}"
+install_packages "${query_packages[@]}"
+install_meanwhile "${packages[@]}" "${picture_packages[@]}"
 build_demo
-wait_for_packages
 
 cd "$repository"
 out=demo-output

@@ -8,15 +8,19 @@ bin=$repository/build/release/bin
 # Debian's Python, which has Debian's matplotlib; another one may stand before it in the PATH.
 python=/usr/bin/python3
 
+# What the library of queries is built with, and all that the demo takes.
+query_packages=(g++ cmake ninja-build python3 libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev zlib1g-dev)
 packages=(
-  g++ cmake ninja-build
-  libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
-  libtiff-dev libyaml-cpp-dev liblz4-dev libzstd-dev
-  libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
-  libglu1-mesa-dev libassimp-dev libexpat1-dev liburdfdom-dev
-  libjs-three python3
+  "${query_packages[@]}"
+  libopenexr-dev libtiff-dev libyaml-cpp-dev liblz4-dev libzstd-dev
+  libopenmesh-dev libglu1-mesa-dev libassimp-dev libexpat1-dev liburdfdom-dev
+  libjs-three
 )
-test_packages=(libgtest-dev pkg-config pybind11-dev libdlpack-dev python3-dev)
+# What the demo does without: also voxels, for the headers of OpenVDB and what they need are a quarter of a gigabyte.
+test_packages=(
+  libgtest-dev pkg-config pybind11-dev libdlpack-dev python3-dev
+  libopenvdb-dev libblosc-dev libboost-iostreams-dev
+)
 # What nothing is built with: pictures and tables of scripts are made by the first, and tests run all of them.
 picture_packages=(python3-numpy python3-matplotlib)
 test_run_packages=("${picture_packages[@]}" python3-jsonschema python3-pytest python3-venv)
@@ -75,9 +79,10 @@ install_meanwhile() {
 
 # Waits for the packages of install_meanwhile; shows what was said where they cannot be installed.
 wait_for_packages() {
-  if [ -z "$installing" ]; then return; fi
+  if [ -z "${installing:-}" ]; then return; fi
   local status=0
   wait "$installing" || status=$?
+  installing=
   if [ $status -ne 0 ]; then cat "$install_log" >&2; fi
   rm -f "$install_log"
   return $status
@@ -120,9 +125,16 @@ build() {
 }
 
 # Builds the four tools and the program that makes the demo's example. A new build folder is configured for these alone; one
-# that has tests or device code keeps them.
+# that has tests or device code keeps them. The library of queries is built while install_meanwhile goes on.
 build_demo() {
   say "Building into build/release (the first time takes some minutes)"
-  if [ ! -e "$repository/build/release/build.ninja" ]; then configure -DVPM_BENCH=OFF -DVPM_TESTS=OFF -DVPM_CUDA=OFF; fi
+  if [ ! -e "$repository/build/release/build.ninja" ]; then
+    local alone=(-DVPM_BENCH=OFF -DVPM_TESTS=OFF -DVPM_CUDA=OFF)
+    configure "${alone[@]}" -DVPM_SOLID=OFF -DVPM_EXR=OFF
+    build_targets vpm
+    wait_for_packages
+    configure "${alone[@]}" -DVPM_SOLID=ON -DVPM_EXR=ON
+  fi
+  wait_for_packages
   build_targets demo_programs
 }

@@ -15,10 +15,11 @@ const VoxelLibrary* load() {
   void* const function = library == nullptr ? nullptr : ::dlsym(library, kVoxelFunctions);
   if (function == nullptr) {
     const char* const why = ::dlerror();
-    throw Error(ErrorKind::unavailable,
-                std::string("voxels need ") + kVoxelLibrary +
-                    ", which cannot be loaded: " + (why == nullptr ? "" : why),
-                {}, "install it beside the other libraries of vpm");
+    throw Error(
+        ErrorKind::unavailable,
+        std::string("voxels need ") + kVoxelLibrary +
+            ", which cannot be loaded: " + (why == nullptr ? "" : why),
+        {}, "install it beside the other libraries of vpm, or build it where OpenVDB is installed");
   }
   return reinterpret_cast<const VoxelLibrary* (*)()>(function)();
 }

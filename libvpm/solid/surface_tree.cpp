@@ -13,11 +13,6 @@ namespace {
 // Padding of float bounds, relative to the reach: several float roundings of either solid.
 constexpr double kPadding = 2e-6;
 
-struct Range {
-  std::uint32_t begin, end;
-  std::uint32_t size() const { return end - begin; }
-};
-
 }  // namespace
 
 class SurfaceTree::Build {
@@ -57,6 +52,11 @@ class SurfaceTree::Build {
   }
 
  private:
+  struct Range {
+    std::uint32_t begin, end;
+    std::uint32_t size() const { return end - begin; }
+  };
+
   std::uint32_t add_node(std::uint32_t parent) {
     Node node{};
     node.child.fill(kNone);

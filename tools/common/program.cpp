@@ -112,6 +112,8 @@ Program::Program(const std::string& name, const std::string& purpose)
   begin_group(app_, "Options");
 }
 
+Program::~Program() = default;
+
 void Program::declare_common() {
   begin_group(app_, kCommonGroup);
   app_.add_option("--device", common_.device,

@@ -30,6 +30,7 @@ class Program {
  public:
   // Adds the common options. `name` is the executable's name, `purpose` the first line of its help.
   Program(const std::string& name, const std::string& purpose);
+  ~Program();  // compiled once, for it takes half of CLI11
 
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
