@@ -1,17 +1,13 @@
 #include "tools/query/registration.h"
 
-#include <vpm/setup_check.h>
-
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "libvpm/api/handle_access.h"
-#include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/recording/frame_feed.h"
-#include "libvpm/scene/any_body.h"
 #include "tools/common/error_text.h"
 #include "tools/query/solid_scene.h"
 
@@ -65,19 +61,17 @@ Registration registered(const Program& program, const std::vector<std::string>& 
 
 namespace {
 
-// Returns the first depth image of a recording that can be used.
-CloudSensor first_image(const std::string& name, std::size_t source, const ImportOptions& import,
-                        const Recording& recording) {
-  for (const RecordedFrame& frame : recording.frames) {
-    if (frame.source != source || frame.is_lost) continue;
+// Returns the first frame of a recording that is a depth image and can be used.
+PreparedChange first_image(const std::string& name, std::size_t source, const ImportOptions& import,
+                           const Recording& recording) {
+  FrameReader reader(recording, import);
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    const RecordedFrame& frame = recording.frames[k];
+    if (frame.source != source) continue;
     if (is_ready_cloud(frame))
       throw Error(ErrorKind::refused, "--register does not move clouds that keep their poses",
                   frame.path, "give the depth images, or --cloud for each camera");
-    try {
-      if (ImportedScan scan = read_frame(frame, import); scan.image) return *std::move(scan.image);
-    } catch (const Error& fault) {
-      if (fault.kind() != ErrorKind::refused) throw;
-    }
+    if (PreparedChange image = reader.prepare({0, {k}}); image.camera) return image;
   }
   throw Error(ErrorKind::refused, "--register: no depth image can be used", name);
 }
@@ -89,10 +83,9 @@ void move_to_agree(const Program& program, const std::vector<std::string>& names
   std::vector<Pose> told;
   std::vector<Body> images;
   for (std::size_t source = 0; source < names.size(); ++source) {
-    const CloudSensor image = first_image(names[source], source, import, recording);
-    told.push_back(image.camera.to_world);
-    images.push_back(HandleAccess::make<Body>(
-        AnyBody(DepthBody(make_cloud(image.depth, image.camera, import.normals)))));
+    const PreparedChange image = first_image(names[source], source, import, recording);
+    told.push_back(image.camera->to_world);
+    images.push_back(HandleAccess::make<Body>(*image.body));
   }
   const std::vector<Pose> now = registered(program, names, told, images).to_world;
   for (RecordedFrame& frame : recording.frames) {
