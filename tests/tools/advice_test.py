@@ -75,7 +75,7 @@ UNTRIED = [
         "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),
     ("stands in a transcript: cases/cameras.t, replay_cameras.t", [
-        "how much of it is in the way is uncertain; calibrate them better", "--register makes the images of cameras agree: give several --frames",
+        "--register makes the images of cameras agree: give several --frames",
         "--register does not move clouds that keep their poses", "give the depth images, or --cloud for each camera",
         "--register: no depth image can be used",
     ]),
