@@ -337,6 +337,60 @@ void make_holes(DepthImage& image, std::uint64_t seed) {
 
 // Where a camera has not measured what others have before a place, its image around the hole tells
 // if it sees past that; nothing is then solid, or free, that is not so without the hole.
+// Lanes must not tell each other anything: some places are in a hole of one camera, or out of its
+// view, where others are not.
+TEST(RigOfAnyScene, PlacesTogetherHaveTheBitsOfEachAlone) {
+  std::vector<DepthBody> images;
+  for (Camera camera : ring_of_cameras(3)) {
+    camera.intrinsics = {131, 131, 79.5, 59.5};
+    camera.width = 160, camera.height = 120;
+    DepthImage image = synthetic::render(*scene(), camera);
+    for (std::uint32_t k = 0; k < image.depth.size(); ++k)
+      if (!images.empty() && k % image.width % 16 < 6 && k / image.width % 16 < 6)
+        image.depth[k] = 0;
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  const RigBody body(std::move(images));
+  const RigSurface surface = body.surface();
+  const Pose to_rig = inverse(body.to_world());
+  const std::vector<Vec3> all = places(400000, 0.3);
+  for (std::size_t k = 0; k + 4 <= all.size(); k += 4) {
+    const Vec3 four[] = {to_rig * all[k], to_rig * all[k + 1], to_rig * all[k + 2],
+                         to_rig * all[k + 3]};
+    for (const CameraSet some : {CameraSet{7}, CameraSet{1}, CameraSet{6}, CameraSet{5}}) {
+      SurfaceSample lanes[4];
+      sample_four(RigSurface::View{&surface, some}, four, lanes);
+      PlaceSample known[4];
+      std::size_t count = 0;
+      for (int lane = 0; lane < 4; ++lane) {
+        const SurfaceSample alone = surface.sample(four[lane], some);
+        expect_same_bits(alone, lanes[lane], static_cast<int>(k) + lane);
+        if (alone.known && alone.distance < 0) known[count++] = {four[lane], alone};
+      }
+      // Those that are left out are before the surface, further than they reach.
+      CellSample samples[4];
+      for (int lane = 0; lane < 4; ++lane)
+        samples[lane] = {narrow(four[lane]), 0.01F * static_cast<float>(1 + k % 5), 1};
+      SurfaceOfSample reached[4];
+      const std::uint32_t wanted =
+          sample_surface(RigSurface::View{&surface, some}, Pose{}, samples, reached);
+      std::uint32_t next = 0;
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        const SurfaceSample alone = surface.sample(widen(samples[lane].center), some);
+        const bool is_left_out = next == wanted || reached[next].sample != lane;
+        EXPECT_EQ(is_left_out, alone.known && alone.distance >= samples[lane].radius) << k + lane;
+        if (!is_left_out)
+          expect_same_bits(alone, reached[next++].at.on_surface, static_cast<int>(k));
+      }
+      if (count == 0) continue;
+      Vec3 normals[4];
+      closest_normals(surface, {known, count}, normals);
+      for (std::size_t i = 0; i < count; ++i)
+        EXPECT_EQ(surface.closest_normal(known[i].x, known[i].on_surface), normals[i]) << k;
+    }
+  }
+}
+
 TEST(RigOfAnyScene, SmallHolesChangeHardlyAnything) {
   const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(2), 2, 2);
   std::vector<DepthBody> whole, images;

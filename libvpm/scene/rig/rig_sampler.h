@@ -40,7 +40,13 @@ struct RigSampler {
     MaskOf<Real> is_decided{};
     const SurfaceSampleOf<Real> near = sample_by(x, some, enough, is_decided);
     if (some == all_cameras() || all(is_decided)) return near;
-    return sample_by(x, all_cameras(), enough, is_decided);
+    MaskOf<Real> ignored{};
+    SurfaceSampleOf<Real> sampled = sample_by(x, all_cameras(), enough, ignored);
+    sampled.known = (is_decided & near.known) | (negated(is_decided) & sampled.known);
+    sampled.distance = is_decided ? near.distance : sampled.distance;
+    sampled.normal = choose(is_decided, near.normal, sampled.normal);
+    sampled.foot = choose(is_decided, near.foot, sampled.foot);
+    return sampled;
   }
 
   // Samples the surface as these cameras see it. A reading from well before x counts only where
@@ -98,7 +104,7 @@ struct RigSampler {
       const MaskOf<Real> is_shorter = ways[k].known & (ways[k].distance < length);
       length = is_shorter ? ways[k].distance : length;
       shortest = choose(is_shorter, ways[k].normal, shortest);
-      depth = ways[k].depth > depth ? ways[k].depth : depth;
+      depth = ways[k].known & (ways[k].depth > depth) ? ways[k].depth : depth;
     }
     Place direction{zero, zero, zero};
     for (std::int32_t k = 0; k < found; ++k) {
@@ -195,18 +201,19 @@ struct RigSampler {
   // Describes the surface that is nearest to a place, of those that cameras show.
   template <class Real>
   struct Nearest {
-    Real length, distance;   // m; the first is not negative
-    Real greatest;           // m, of all distances
-    Real half_pixel;         // m, of its camera
-    Real apart;              // m; readings further apart are of two surfaces
-    MaskOf<Real> is_free{};  // where a camera has the place before its surface
-    PlaceOf<Real> normal;    // set by weigh()
+    Real length, distance;    // m; the first is not negative
+    Real greatest;            // m, of all distances
+    Real half_pixel;          // m, of its camera
+    Real apart;               // m; readings further apart are of two surfaces
+    MaskOf<Real> is_free{};   // where a camera has the place before its surface
+    MaskOf<Real> has_fits{};  // where one reads the fit of a hole
+    PlaceOf<Real> normal;     // set by weigh()
   };
   template <class Real>
   [[gnu::always_inline]] VPM_HD Nearest<Real> nearest_of(const RigReading<Real>* readings,
                                                          std::int32_t found) const {
     const Real zero{};
-    Nearest<Real> nearest{zero + HUGE_VAL,   zero, zero - HUGE_VAL, zero, zero, {},
+    Nearest<Real> nearest{zero + HUGE_VAL,   zero, zero - HUGE_VAL, zero, zero, {}, {},
                           {zero, zero, zero}};
     Real depth = zero;
     for (std::int32_t k = 0; k < found; ++k) {
@@ -220,6 +227,7 @@ struct RigSampler {
       nearest.greatest =
           is_measured & (reading.distance > nearest.greatest) ? reading.distance : nearest.greatest;
       nearest.is_free |= is_measured & (reading.distance > 0);
+      nearest.has_fits |= reading.known & negated(reading.is_measured);
       depth = reading.known & (reading.depth > depth) ? reading.depth : depth;
     }
     nearest.apart = most_agreement * depth;
@@ -232,10 +240,11 @@ struct RigSampler {
   }
   // True where the greatest mean is surely more than `enough`: a camera has the place before its
   // surface, and no surface is so near that its reading, bound or not, is averaged with one behind.
+  // Fits of holes are averaged with silhouettes however near they are.
   template <class Real>
   [[gnu::always_inline]] static VPM_HD MaskOf<Real> is_clearly_before(const Nearest<Real>& nearest,
                                                                       const Real& enough) {
-    return nearest.is_free & (nearest.length > kRounding * enough) &
+    return nearest.is_free & negated(nearest.has_fits) & (nearest.length > kRounding * enough) &
            (2 * nearest.length > kRounding * nearest.apart);
   }
 
