@@ -33,8 +33,7 @@ struct DepthStreamOptions {
 // device.
 class VPM_API DepthStream {
  public:
-  // Throws Error(invalid_argument) for options out of range, Error(unavailable) if the device is
-  // not there.
+  // Throws Error(invalid_argument) for options out of range, Error(unavailable) without the device.
   explicit DepthStream(const DepthStreamOptions& options);
   ~DepthStream();
   DepthStream(DepthStream&&) noexcept;

@@ -18,13 +18,11 @@ namespace vpm {
 // Errors and remarks name these in backquotes.
 struct ImportParameters {
   std::optional<Intrinsics> intrinsics = {};  // depth images need it; organised PCD tells its own
-  // Pose of the camera, or of the points' frame, in the world. If unset: VIEWPOINT of a PCD, or the
-  // identity.
+  // Pose in the world of the camera, or points' frame. If unset: a PCD's VIEWPOINT, or identity.
   std::optional<Pose> camera_pose = {};
   CameraAxes axes = CameraAxes::opencv;  // axes of that frame, and of points
 
-  // Units of the file per metre: 1000 for millimetres. If unset: 1000 for images of integers, 1
-  // otherwise.
+  // Units of the file per metre: 1000 for millimetres. If unset: 1000 for images of integers, or 1.
   std::optional<double> depth_scale = {};
   // Undoes codings of 16-bit values: "swapped" bytes, "big-endian" (the order that PGM's standard
   // tells; otherwise it is looked at), "rotated" by three bits (SUN3D, APC), "disparity" of a raw

@@ -19,8 +19,8 @@
 
 namespace vpm {
 
-// Compares sizes, and the poses that were asked, with what a cloud shows. Shares tools and cloud.
-// Belongs to one thread at a time. Keeps at most some hundred poses, evenly chosen.
+// Compares sizes, and some hundred of the poses that were asked, evenly chosen, with what a cloud
+// shows. Shares tools and cloud. Belongs to one thread at a time.
 class VPM_API SetupCheck {
  public:
   // Takes milliseconds. `measure` is the one that is asked: what a camera has not seen is told for
@@ -45,8 +45,7 @@ class VPM_API SetupCheck {
   //   nothing, at half of the poses or more;
   // - no pose brought a tool into the camera's view, or near the surface: the remark names what
   //   would (poses in metres, inverse poses, other axes);
-  // - what a tool has behind the surface lies unmeasured, as above, at fewer than half of the
-  // poses.
+  // - what a tool has behind the surface lies unmeasured, as above, at fewer poses than that.
   Remarks remarks() const;
 
  private:
@@ -65,19 +64,17 @@ struct DoubtedCamera {
 // Compares depth images of several cameras, which Body::of_cameras() is to take. Returns the one
 // that contradicts others most, if a quarter or more of what it and another know is a surface to
 // one, and free to the other by more than 3 % of the depth: its pose is missing, inverse or in
-// millimetres, its depths are in another unit, or a thing moved. Otherwise returns a camera more
-// than 30 times as far from each other one as they see; else one that shows no surface which
-// another shows too: with a warning if its pose is the identity and it hides nothing that others
-// show; else with a note, or nothing where no two share a surface and one hides what another shows,
-// as from opposite sides of a thing. Returns nothing where no camera is doubted. Takes a core 20 ms
-// for four images. Thread-safe. Throws Error(invalid_argument) for a body that is no depth image.
+// millimetres, its depths are in another unit, or a thing moved. Otherwise returns one more than 30
+// times as far from all others as they see; else one that shows no surface which another shows too:
+// with a warning if its pose is the identity and it hides nothing that others show; else with a
+// note, or nothing where no two share a surface and one hides what another shows, as from opposite
+// sides of a thing. Returns nothing if none is doubted. Takes a core 20 ms for four. Thread-safe.
+// Throws Error(invalid_argument) for a body that is no depth image.
 VPM_API std::optional<DoubtedCamera> doubted_camera(std::span<const Body> images);
 
-// Compares depth images of several cameras, which Body::of_cameras() is to take. Returns a warning
-// if some show both sides of a thing that is thinner than twice the deviation, robustly, of these
-// cameras where they see one surface: its volume is then uncertain by half or more. Otherwise, and
-// where cameras agree well, returns nothing. Takes a core 20 ms for four images. Thread-safe.
-// Throws Error(invalid_argument) for a body that is no depth image.
+// Returns a warning if some images show both sides of a thing that is thinner than twice the robust
+// deviation of their cameras where these see one surface: its volume is then uncertain by half or
+// more. Otherwise returns nothing. Cost, threads and errors are as for doubted_camera().
 VPM_API std::optional<Remark> uncertain_thickness(std::span<const Body> images);
 
 // Where several cameras are by what their images show.

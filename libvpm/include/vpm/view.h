@@ -32,8 +32,7 @@ class PoseView;  // the library's own
 
 // Records poses, answers and states of spheres as they come. Of a long run it keeps every n-th pose
 // and the last one, 50 to 1000 of them, so that its memory and the page, some 5 MB, stay small.
-// Shares tools, clouds and bodies. Belongs to one thread at a time. Names are shown as text,
-// without folders.
+// Shares tools, clouds, bodies. Belongs to one thread at a time. Names are shown without folders.
 class VPM_API View {
  public:
   // `names` are those of the tools, `options` those of the queries; `program` is named on the page.

@@ -50,7 +50,7 @@ vpm-query: note: left: its camera is moved by 3.00 mm and 0.00? degrees, to * (g
 vpm-query: note: right: its camera is moved by 3.00 mm and 0.00? degrees, to * (glob)
 $ vpm-normals left/depth/1000.000000.png -o first.vpmc --intrinsics 60,60,31.5,23.5 --quiet && vpm-normals right/depth/1000.000000.png -o off.vpmc --intrinsics 90,90,31.5,23.5 --camera-pose 0.02,0,0.006,0,0,0,1 --quiet
 $ vpm-query --tool cube.vpmg --cloud off.vpmc --cloud first.vpmc --pose 0,0,0.95,0,0,0,1 --register --quiet | cut -d, -f2- > afresh
-$ grep '1000.000000.png;1000.000000.png' moved.jsonl | cut -d, -f4- | sort -u | cmp - afresh
+$ grep 'left/1000.000000.png;right/1000.000000.png' moved.jsonl | cut -d, -f4- | sort -u | cmp - afresh
 $ vpm-query --tool cube.vpmg --frames left --poses still.txt --register --quiet; sed 's/^.*$/left.vpmc/; s/^/1000.0 /' still.txt | head -1 > ready.txt; vpm-query --tool cube.vpmg --frames left --frames ready.txt --poses still.txt --register --quiet
 2> vpm-query: error: --register makes the images of cameras agree: give several --frames
 2> vpm-query: error: left.vpmc: --register does not move clouds that keep their poses; give the depth images, or --cloud for each camera
