@@ -13,16 +13,13 @@ import shutil
 import statistics
 import time
 
-from thread_scaling import report
+from thread_scaling import CAMERA, make_tool, report
 
 ROUNDS, FRAMES, POSES = 3, 128, 100
 
 
 def make_inputs(run):
-    run("make-example", ".")
-    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", "1000", "--quiet")
-    run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--quiet")
-    path = pathlib.Path("poses.jsonl").read_text().splitlines()
+    path = make_tool(run)
     pathlib.Path("poses.txt").write_text("\n".join(path[k * len(path) // POSES] for k in range(POSES)) + "\n")
     os.mkdir("frames")
     names = [f"frames/{k:04}.png" for k in range(FRAMES)]
@@ -39,7 +36,7 @@ def seconds_of(run, jobs, *command):
 
 
 def measured(run):
-    normals = ("vpm-normals", "--list", "frames.txt", "-o", "clouds", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
+    normals = ("vpm-normals", "--list", "frames.txt", "-o", "clouds", *CAMERA)
     query = ("vpm-query", "--list", "clouds.txt", "--tool", "tool.vpmg", "--poses", "poses.txt", "-o", "results")
     counts = [2 ** k for k in range(10) if 2 ** k <= len(os.sched_getaffinity(0))]
     rates = {}

@@ -5,8 +5,9 @@
 
 BUILD/bin has the programs, make-example and query-time (`cmake --build BUILD --target query-time`), COMMIT is what they were built of. The
 scene and the tool of 1000 spheres are those of the demo. "clear" poses touch nothing, so that what Python adds counts most; "deep" ones
-are those of the demo's path that do, whose times differ by more than what Python adds to one. C++ and Python ask the same poses in turn, on one thread each, and their processor's time counts, so
-that other programs disturb little. A round's ratio and difference are of neighbours in time; the figures are medians over the rounds.
+are those of the demo's path that do, whose times differ by more than what Python adds to one. C++ and Python ask the same poses in turn,
+on one thread each, and their processor's time counts, so that other programs disturb little. A round's ratio and difference are of
+neighbours in time; the figures are medians over the rounds.
 Fails if the answers of the two differ.
 """
 import json
@@ -19,21 +20,16 @@ import time
 import numpy as np
 import vpm
 
-from thread_scaling import report
+from thread_scaling import make_demo, report, write_poses
 
 ROUNDS = 11
 ASKED = (("clear", "batch", 10_000), ("clear", "singles", 2_000), ("deep", "batch", 10_000))
 
 
 def make_inputs(run):
-    run("make-example", ".")
-    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", "1000", "--quiet")
-    run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--quiet")
-    run("vpm-normals", "depth.png", "-o", "scene.vpmc", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000", "--quiet")
-    path = pathlib.Path("poses.jsonl").read_text().splitlines()
-    of_kind = {"clear": path[:9], "deep": path[len(path) // 3:]}
+    poses = make_demo(run)
     for kind, way, count in ASKED:
-        pathlib.Path(f"{kind}.{way}").write_text("\n".join(of_kind[kind][k % len(of_kind[kind])] for k in range(count)) + "\n")
+        write_poses(f"{kind}.{way}", poses[kind], count)
 
 
 def in_python(query, scene, poses, way):

@@ -20,19 +20,34 @@ import time
 
 ROUNDS = 3
 CLEAR, DEEP = 400_000, 30_000
+CAMERA = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")  # of the demo's depth image
 
 
-def make_inputs(run):
+def make_tool(run):
+    """Makes the demo's example and its tool of 1000 spheres, tool.vpmg. Returns the poses of its path, a line each."""
     run("make-example", ".")
     run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", "1000", "--quiet")
     run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--quiet")
-    run("vpm-normals", "depth.png", "-o", "scene.vpmc", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000", "--quiet")
-    path = pathlib.Path("poses.jsonl").read_text().splitlines()
-    first_deep = len(path) // 3
-    clear, deep = path[:9], path[first_deep:]
-    for name, poses in (("one", path[:1]), ("clear", [clear[k % len(clear)] for k in range(CLEAR)]),
-                        ("deep", [deep[k % len(deep)] for k in range(DEEP)])):
-        pathlib.Path(name).write_text("\n".join(poses) + "\n")
+    return pathlib.Path("poses.jsonl").read_text().splitlines()
+
+
+def make_demo(run):
+    """Makes the demo's scene, scene.vpmc, too. Returns those poses of the path that touch nothing, "clear", and those that do, "deep"."""
+    path = make_tool(run)
+    run("vpm-normals", "depth.png", "-o", "scene.vpmc", *CAMERA, "--quiet")
+    return {"clear": path[:9], "deep": path[len(path) // 3:]}
+
+
+def write_poses(name, poses, count):
+    """Writes so many poses, which begin anew after the last."""
+    pathlib.Path(name).write_text("\n".join(poses[k % len(poses)] for k in range(count)) + "\n")
+
+
+def make_inputs(run):
+    poses = make_demo(run)
+    write_poses("one", poses["clear"], 1)
+    write_poses("clear", poses["clear"], CLEAR)
+    write_poses("deep", poses["deep"], DEEP)
 
 
 def seconds_of(run, poses, threads):

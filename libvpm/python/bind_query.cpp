@@ -532,9 +532,8 @@ void bind_setup_check(py::module_& module) {
       py::arg("images"),
       "Returns a vpm.Remark if depth images show both sides of a thing that is thinner than twice "
       "what their cameras disagree by, so that its volume is uncertain by half or more; else None."
-      "\n\nimages: as for doubted_camera(). Takes a core 20 ms for four. Raises ArgumentError for "
-      "a "
-      "body that is no depth image. Thread-safe.");
+      "\n\nimages: as for doubted_camera(). Takes a core 20 ms for four. Raises "
+      "ArgumentError for a body that is no depth image. Thread-safe.");
 }
 
 }  // namespace

@@ -109,9 +109,9 @@ class Page {
                        std::span<const Pose> poses, bool is_tool = true);
   std::size_t add_column(const Column& column);
 
-  // Adds images. `of_step` says which one each step shows, or kNoImage; empty: the first. Pixels of
-  // the images, all of equal size, are taken one in `stride` each way, 0: as many as kMostPixels
-  // allows.
+  // Adds images of equal size, of which each step shows one. `of_step` has its number for each
+  // step, or kNoImage for a step that shows none; where it is empty all steps show the first. One
+  // pixel in `stride` is taken each way; 0 stands for the least stride that kMostPixels allows.
   void add_image(const std::string& name, std::span<const ImageView> images,
                  std::span<const std::uint32_t> of_step, bool by_normal = false,
                  std::uint32_t stride = 0);

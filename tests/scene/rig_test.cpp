@@ -416,8 +416,8 @@ TEST(RigOfAnyScene, SmallHolesChangeHardlyAnything) {
   EXPECT_LT(solid, 0.01 * known);
 }
 
-// A dark thing on a table that only one of two cameras measures is there, though the table is all
-// around the hole that it makes in the other's image.
+// Two cameras see a dark thing on a table: one measures it, in the other's image it is a hole with
+// the table all around. It must stay solid.
 TEST(RigOfAnyScene, WhatOneCameraMeasuresIsNotSeenThroughAHoleOfAnother) {
   const synthetic::SurfacePtr table = synthetic::make_wall({}, {0, 0, 1}),
                               thing =

@@ -3,9 +3,9 @@
 //
 //   query-time TOOL.vpmg CLOUD.vpmc POSES      POSES has a pose on each line
 //
-// For each line of standard input asks all poses on one thread, together for "batch" and one by one
-// for "singles", and prints the seconds of the processor that they took and the sum of their
-// volumes, in m^3.
+// A line "batch" of standard input asks all poses together, any other line asks them one by one, on
+// one thread. For each line it prints the seconds of the processor that this took, and the sum of
+// the volumes, in m^3.
 #include <vpm/device.h>
 #include <vpm/query.h>
 

@@ -23,8 +23,6 @@
 namespace vpm::tools {
 namespace {
 
-constexpr const char* kVisibleGpus = "CUDA_VISIBLE_DEVICES";
-
 // Returns the GPUs that runs are spread over, as CUDA_VISIBLE_DEVICES names them: none where there
 // is none, or where --device says more than that a GPU is wanted.
 std::vector<std::string> gpus_for(const Program& program) {

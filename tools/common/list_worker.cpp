@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -52,8 +53,8 @@ void send(int socket, unsigned char byte) {
   static_cast<void>(::send(socket, &byte, 1, MSG_NOSIGNAL));
 }
 
-// Returns the environment of this process, with CUDA_VISIBLE_DEVICES=... in its place if it is not
-// empty; null after the last.
+// Returns the environment of this process, followed by null. `visible`, NAME=VALUE, stands for the
+// variable of that name, unless it is empty.
 std::vector<char*> environment_with(std::string& visible) {
   const std::string_view name = std::string_view(visible).substr(0, visible.find('=') + 1);
   std::vector<char*> environment;
@@ -90,7 +91,7 @@ Worker::Worker(const std::string& gpu)
   std::string socket = std::to_string(its_end.number), option = "--config", works = kWorks;
   char* const words[] = {program_invocation_name, option.data(), file.data(), works.data(),
                          socket.data(),           nullptr};
-  std::string visible = gpu.empty() ? "" : "CUDA_VISIBLE_DEVICES=" + gpu;
+  std::string visible = gpu.empty() ? "" : std::string(kVisibleGpus) + "=" + gpu;
   const std::vector<char*> environment = environment_with(visible);
   const pid_t parent = ::getpid();
   process_ = ::fork();

@@ -10,6 +10,9 @@
 
 namespace vpm::tools {
 
+// Variable of the environment that names the GPUs which a process sees.
+inline constexpr const char* kVisibleGpus = "CUDA_VISIBLE_DEVICES";
+
 // How a run of the program ended, and the lines that it said.
 struct Ended {
   int status = 0;  // as waitpid() tells it of a process of one run
@@ -38,8 +41,8 @@ class Worker {
   void begin(const std::string& configuration);
   // Becomes readable when the run ends, or the process with it.
   int socket() const { return socket_.number; }
-  // Waits for that. A worker whose run failed is to begin no other: what it shares with that, such
-  // as the use of a GPU, may be broken.
+  // Waits until the run ends, and returns how. A worker whose run failed must begin no other one:
+  // what two runs share in a process, such as the use of a GPU, may be broken.
   Ended end();
   // Lets the process end, for which the destructor waits.
   void dismiss() const;

@@ -21,8 +21,8 @@ Registration registered(const Program& program, const std::vector<std::string>& 
 
 // Moves the cameras of recordings, each by what the first images of all tell together; where one
 // moves along a path, all poses of that by the same motion in its frame. `names` are those of the
-// recordings. Prints what registered() prints. Throws Error(refused) for a recording without an
-// image, or of clouds that keep their poses, and what registered() throws.
+// recordings. Prints what registered() prints. Throws Error(refused) if a recording has no image,
+// or holds ready clouds, which keep their poses; and whatever registered() throws.
 void move_to_agree(const Program& program, const std::vector<std::string>& names,
                    const ImportOptions& import, Recording& recording);
 

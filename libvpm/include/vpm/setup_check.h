@@ -32,7 +32,7 @@ class VPM_API SetupCheck {
   SetupCheck(SetupCheck&&) noexcept;
   SetupCheck& operator=(SetupCheck&&) noexcept;
 
-  // Notes a query's answer at a pose of a tool. Throws Error(invalid_argument) without this one.
+  // Notes an answer at a pose of the tool of this index. Throws Error(invalid_argument) beyond all.
   void see(const Pose& pose, const Result& result, std::size_t tool = 0);
 
   // Returns a warning with its cure if something is probably wrong, otherwise nothing, in some

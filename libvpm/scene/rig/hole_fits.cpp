@@ -271,8 +271,8 @@ double mean_inverse_depth(const DepthSampler& image, const std::vector<Pixel>& p
   return sum / static_cast<double>(pixels.size());
 }
 
-// Calls tell(pixel, fit) for the pixels of a hole at which a fit goes on, those of each fit in
-// turn.
+// Finds the surfaces that go on in a hole, one or two, and calls tell(pixel, fit) for each of its
+// pixels: first for all pixels of one fit, then for those of the other.
 template <class Tell>
 void fit_hole(const DepthSampler& image, const Hole& hole, const Tell& tell) {
   if (!hole.is_small() || !hole.is_closed) return;

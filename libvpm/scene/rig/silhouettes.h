@@ -35,7 +35,8 @@ struct Silhouettes {
   std::int32_t columns = 0;  // of the table
   HoleFits holes;
 
-  // False if no pixel of a rectangle has a nearest silhouette or the fit of a hole.
+  // Returns false if `nearest` names a silhouette at no pixel of a rectangle, and no hole with a
+  // fit is there. It may be true without either, as tiles are asked, not pixels.
   VPM_HD bool may_be_near(const PixelRectangle& p) const {
     const std::int32_t u0 = p.u0 >> kTileShift, u1 = (p.u1 >> kTileShift) + 1;
     const std::int32_t above = (p.v0 >> kTileShift) * columns,
