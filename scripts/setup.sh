@@ -9,10 +9,11 @@ bin=$repository/build/release/bin
 python=/usr/bin/python3
 
 # What the library of queries is built with, and all that the demo takes.
-query_packages=(g++ cmake ninja-build python3 libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev zlib1g-dev)
+query_packages=(g++ cmake ninja-build python3 libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev zlib1g-dev
+  liblz4-dev libzstd-dev)
 packages=(
   "${query_packages[@]}"
-  libopenexr-dev libtiff-dev libyaml-cpp-dev liblz4-dev libzstd-dev
+  libopenexr-dev libtiff-dev libyaml-cpp-dev
   libopenmesh-dev libglu1-mesa-dev libassimp-dev libexpat1-dev liburdfdom-dev
   libjs-three
 )

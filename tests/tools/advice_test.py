@@ -115,7 +115,6 @@ UNTRIED = [
     ]),
     ("said by a build without a library, or with CUDA", [
         "install it beside the other libraries of vpm, or build it where OpenVDB is installed",
-        "build it where liblz4 and libzstd are installed, or convert the file: mcap decompress IN.mcap -o OUT.mcap",
         "give the .vpmg that vpm-pack and vpm-graph make of it",
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",
         "build it where libtiff is installed, or convert the image to a 16-bit PNG", "save it as OBJ, OFF, PLY or STL",

@@ -1,10 +1,8 @@
 #include "libvpm/recording/mcap/mcap_file.h"
 
-#include <zlib.h>
-#ifndef VPM_WITHOUT_COMPRESSION
 #include <lz4frame.h>
+#include <zlib.h>
 #include <zstd.h>
-#endif
 
 #include <filesystem>
 #include <fstream>
@@ -22,16 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::uint64_t kHead = 9;                             // bytes of a record: kind and length
 constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30U;  // bytes, decompressed
-enum class Kind : std::uint8_t {
-  invalid,
-  footer = 2,
-  schema,
-  channel,
-  message,
-  chunk,
-  chunk_index = 8,
-  data_end = 15
-};
+enum class Kind : std::uint8_t { footer = 2, schema, channel, message, chunk, index = 8, end = 15 };
 
 std::vector<std::byte> read_part(std::ifstream& file, std::uint64_t at, std::uint64_t count) {
   std::vector<std::byte> bytes(count);
@@ -63,30 +52,22 @@ Records decompress(const std::string& compression, Bytes in, std::size_t size) {
   if (compression.empty()) {
     out.size = std::min(size, in.size());
     std::ranges::copy(in.first(out.size), out.bytes.get());
-  } else if (compression != "lz4" && compression != "zstd") {
+  } else if (compression == "lz4") {
+    LZ4F_dctx* context = nullptr;
+    LZ4F_createDecompressionContext(&context, LZ4F_VERSION);
+    std::size_t taken = in.size();
+    LZ4F_decompress(context, out.bytes.get(), &out.size, in.data(), &taken, nullptr);
+    LZ4F_freeDecompressionContext(context);
+  } else if (compression == "zstd") {
+    ZSTD_DCtx* const context = ZSTD_createDCtx();
+    ZSTD_inBuffer from{in.data(), in.size(), 0};
+    ZSTD_outBuffer to{out.bytes.get(), size, 0};
+    ZSTD_decompressStream(context, &to, &from);
+    out.size = to.pos;
+    ZSTD_freeDCtx(context);
+  } else {
     refuse("its chunks are compressed by " + file::shown(compression), {},
            "record it with lz4 or zstd");
-  } else {
-#ifdef VPM_WITHOUT_COMPRESSION
-    throw Error(ErrorKind::unavailable, "this build reads no chunks that are compressed", {},
-                "build it where liblz4 and libzstd are installed, or convert the file: mcap "
-                "decompress IN.mcap -o OUT.mcap");
-#else
-    if (compression == "lz4") {
-      LZ4F_dctx* context = nullptr;
-      LZ4F_createDecompressionContext(&context, LZ4F_VERSION);
-      std::size_t taken = in.size();
-      LZ4F_decompress(context, out.bytes.get(), &out.size, in.data(), &taken, nullptr);
-      LZ4F_freeDecompressionContext(context);
-    } else {
-      ZSTD_DCtx* const context = ZSTD_createDCtx();
-      ZSTD_inBuffer from{in.data(), in.size(), 0};
-      ZSTD_outBuffer to{out.bytes.get(), size, 0};
-      ZSTD_decompressStream(context, &to, &from);
-      out.size = to.pos;
-      ZSTD_freeDCtx(context);
-    }
-#endif
   }
   return out;
 }
@@ -122,17 +103,15 @@ struct Scan {
       ByteCursor cursor(record);
       if (kind == Kind::chunk && place.chunk == 0) take_chunk(record, place.offset, is_cut);
       if (is_cut) return;
-      if (kind == Kind::schema) take_schema(cursor);
+      if (kind == Kind::schema) {
+        const auto id = cursor.number<std::uint16_t>();
+        types[id] = cursor.text();
+      }
       if (kind == Kind::channel) take_channel(cursor);
       if (kind == Kind::message) take_message(cursor, place);
     } catch (const Damage&) {
       ++damaged;
     }
-  }
-
-  void take_schema(ByteCursor& cursor) {
-    const auto id = cursor.number<std::uint16_t>();
-    types[id] = cursor.text();
   }
 
   void take_channel(ByteCursor& cursor) {
@@ -180,9 +159,9 @@ Remarks File::scan(const std::function<void(const Message&)>& see) const try {
   std::uint64_t at = kMagic.size();
   while (size_ - at >= kHead && !is_cut) {
     const auto [kind, length] = read_head(input, at);
-    if (kind == Kind::footer || kind == Kind::invalid) break;
-    has_end |= kind == Kind::data_end;
-    has_index |= kind == Kind::chunk_index;
+    if (kind == Kind{} || kind == Kind::footer) break;  // there is no kind 0
+    has_end |= kind == Kind::end;
+    has_index |= kind == Kind::index;
     const std::uint64_t body = at + kHead, there = std::min(length, size_ - body);
     is_cut = there < length;
     if (kind >= Kind::schema && kind <= Kind::chunk)
@@ -191,18 +170,20 @@ Remarks File::scan(const std::function<void(const Message&)>& see) const try {
     if (!is_cut || kind == Kind::chunk) at = body + there;
   }
   Remarks remarks;
+  const auto remark = [&](bool is_warning, const std::string& text) {
+    remarks.push_back({is_warning, text});
+  };
   if (scan.damaged > 0)
-    remarks.push_back({true,
-                       "chunks or records that are damaged, or contradict others, and are left "
-                       "out with all that they hold: " +
-                           std::to_string(scan.damaged)});
+    remark(true,
+           "chunks or records that are damaged, or contradict others, and are left out with "
+           "all that they hold: " +
+               std::to_string(scan.damaged));
   if (!has_end)
-    remarks.push_back({true,
-                       "it has no end, as where its recorder was stopped: it is read as far as it "
-                       "goes, " +
-                           std::to_string(at) + " of " + std::to_string(size_) + " bytes"});
+    remark(true,
+           "it has no end, as where its recorder was stopped: it is read as far as it goes, " +
+               std::to_string(at) + " of " + std::to_string(size_) + " bytes");
   else if (!has_index)
-    remarks.push_back({false, "it has no index, and is read from its start"});
+    remark(false, "it has no index, and is read from its start");
   return remarks;
 } catch (const Error& fault) {
   throw Error(fault.kind(), fault.problem(), path_, fault.hint());
@@ -230,7 +211,7 @@ std::vector<std::string> files_of(const std::string& path) {
   if (fs::is_regular_file(path, fault)) {
     std::string start(kMagic.size(), ' ');
     std::ifstream(path, std::ios::binary).read(start.data(), std::ssize(start));
-    if (start == kMagic) files.push_back(path);
+    if (start == kMagic) files = {path};
     return files;
   }
   for (fs::directory_iterator entry(path, fault), end; !fault && entry != end;

@@ -45,7 +45,7 @@ class File {
   // Shows all messages in the order of the file, as far as that goes, without chunks that are
   // damaged. Returns what was left out, and why: a message for which `see` throws Damage, too.
   // Throws what else that throws; Error(refused), naming the file, if reading fails or a
-  // compression is unknown, and Error(unavailable) in builds without liblz4 and libzstd.
+  // compression is unknown.
   Remarks scan(const std::function<void(const Message&)>& see) const;
 
   // Returns the bytes of a message that scan() showed. Keeps its chunk, for those that follow it

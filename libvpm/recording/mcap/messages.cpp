@@ -1,6 +1,7 @@
 #include "libvpm/recording/mcap/messages.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libvpm/file/text.h"
 #include "libvpm/import/scan_facts.h"
@@ -51,19 +52,11 @@ std::vector<std::byte> array_of(ByteCursor& cursor) {
   return array;
 }
 
-// Returns the number with all its digits, behind a separator.
-std::string digits(const char* separator, double number) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%s%.17g", separator, number);
-  return text;
-}
-
-// Takes numbers, and returns them as a list of JSON.
-std::string list_of(ByteCursor& cursor, std::uint32_t count) {
-  std::string list;
-  for (std::uint32_t k = 0; k < count; ++k)
-    list += digits(k == 0 ? "" : ",", cursor.number<double>());
-  return "[" + list + "]";
+template <std::size_t count>
+std::array<double, count> read_numbers(ByteCursor& cursor) {
+  std::array<double, count> numbers;
+  for (double& number : numbers) number = cursor.number<double>();
+  return numbers;
 }
 
 }  // namespace
@@ -107,13 +100,15 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
   read_header(cursor);
   const std::uint32_t height = next(), width = next();
   cursor.text();  // the model of the distortion
-  std::string json = "{\"d\":" + list_of(cursor, next());
-  json += ",\"k\":" + list_of(cursor, 9);
-  list_of(cursor, 9);  // the rotation that rectifies
-  json += ",\"p\":" + list_of(cursor, 12) + "}";
+  std::vector<double> distortion(std::min<std::size_t>(next(), cursor.left() / sizeof(double)));
+  for (double& number : distortion) number = cursor.number<double>();
+  nlohmann::json lists{{"d", distortion}};
+  for (const char* const key : {"k", "r"}) lists[key] = read_numbers<9>(cursor);
+  lists["p"] = read_numbers<12>(cursor);
+  const std::string text = lists.dump();
   const std::uint32_t across = std::max(1U, next()), down = std::max(1U, next());  // binning
   const std::uint32_t left = next(), top = next(), rows = next(), columns = next();
-  IntrinsicsFile file = parse_intrinsics(std::as_bytes(std::span(json)), name);
+  IntrinsicsFile file = parse_intrinsics(std::as_bytes(std::span(text)), name);
   file.width = (columns > 0 ? columns : width) / across;  // zeros stand for the whole image
   file.height = (rows > 0 ? rows : height) / down;
   if (left == 0 && top == 0 && file.width == width && file.height == height) return file;
@@ -128,25 +123,22 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
 
 StampedPose read_pose(Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
-  StampedPose pose{read_header(cursor), {}, {}};
-  for (double& number : pose.numbers) number = cursor.number<double>();
-  return pose;
+  return {read_header(cursor), {}, read_numbers<7>(cursor)};
 }
 
 std::vector<StampedPose> read_transforms(Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
   std::vector<StampedPose> transforms;
-  for (auto left = cursor.number<std::uint32_t>(); left > 0; --left) {
-    StampedPose& pose = transforms.emplace_back(StampedPose{read_header(cursor), {}, {}});
-    pose.child = read_frame(cursor);
-    for (double& number : pose.numbers) number = cursor.number<double>();
-  }
+  for (auto left = cursor.number<std::uint32_t>(); left > 0; --left)
+    transforms.push_back({read_header(cursor), read_frame(cursor), read_numbers<7>(cursor)});
   return transforms;
 }
 
 std::string pose_line(const std::string& time, const std::array<double, 7>& numbers) {
   std::string line = time;
-  for (const double number : numbers) line += digits(" ", number);
+  char text[32];
+  for (const double number : numbers)
+    line.append(text, std::snprintf(text, sizeof text, " %.17g", number));
   return line + "\n";
 }
 

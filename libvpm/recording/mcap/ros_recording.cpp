@@ -136,8 +136,8 @@ Frames read_frames(const std::string& recording, const std::string& topic) {
       of_topic.type == kCompressedImage ? frames.topic.rfind('/') : frames.topic.size();
   find_intrinsics(infos, frames.topic.substr(0, end), recording, frames);
   if (const std::size_t doubled = of_topic.count - frames.frames.size(); doubled > 0)
-    frames.remarks.push_back({false, "images left out, since they have the time of one before: " +
-                                         std::to_string(doubled)});
+    frames.remarks.push_back(
+        {false, "images left out that have the time of one before: " + std::to_string(doubled)});
   if (of_topic.lack_times)
     frames.remarks.push_back(
         {false, "images whose header has no time have that of their recording"});
@@ -175,8 +175,8 @@ Poses read_poses(const PosesName& name) {
   if (!wanted.empty() && !wanted.starts_with('/')) {
     const std::size_t colon = wanted.rfind(':');  // npos + 1 is 0
     const std::string world = colon == wanted.npos ? "" : wanted.substr(0, colon);
-    FrameMotion motion = tree.motion(wanted.substr(colon + 1), world, recording);
-    return {std::move(motion.lines), std::move(motion.world), std::move(poses.remarks)};
+    const FrameMotion motion = tree.motion(wanted.substr(colon + 1), world, recording);
+    return {motion.lines, motion.world, poses.remarks};
   }
   const auto& all = found.at(chosen(topics, wanted, "poses (PoseStamped; of TF: FILE:FRAME)",
                                     recording + ":", recording, poses.remarks));
