@@ -119,7 +119,7 @@ void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]) {
   sample_lanes(surface, places, on_surface_at);
 }
-VPM_VECTOR_CLONES
+VPM_AVX2_CLONES
 void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]) {
   sample_lanes(surface, places, on_surface_at);
@@ -134,7 +134,7 @@ std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
   return sample_lanes(surface, to_surface, samples, on_surface_at);
 }
-VPM_VECTOR_CLONES
+VPM_AVX2_CLONES
 std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
   return sample_lanes(surface, to_surface, samples, on_surface_at);
@@ -145,7 +145,7 @@ void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeP
                 UnseenSum& unseen) {
   add_unseen_lanes(surface, to_surface, parts, unseen);
 }
-VPM_VECTOR_CLONES
+VPM_AVX2_CLONES
 void add_unseen(const RigSurface& surface, const Pose& to_surface, const FreeParts& parts,
                 UnseenSum& unseen) {
   add_unseen_lanes(surface, to_surface, parts, unseen);
@@ -160,7 +160,7 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> p
         return search_normal(surface, x, on_surface);
       });
 }
-VPM_VECTOR_CLONES
+VPM_AVX2_CLONES
 void closest_normals(const RigSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals) {
   search_lanes(
