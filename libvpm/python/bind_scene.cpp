@@ -191,8 +191,9 @@ void bind_scene_body(py::module_& module) {
           "order changes no bit. Raises ArgumentError for none, for more than 16, and for a body "
           "that is no depth image.")
       .def_property_readonly("is_solid", &Body::is_solid, "True if the body is a solid.")
-      .def_property_readonly("points", &Body::points, py::call_guard<py::gil_scoped_release>(),
-                             "Number of points with a normal; a solid has none.");
+      .def_property_readonly(
+          "points", py::cpp_function(&Body::points, py::call_guard<py::gil_scoped_release>()),
+          "Number of points with a normal; a solid has none.");
   py::class_<Scene>(module, "Scene",
                     "Bodies in one world frame, whose volumes, forces and torques add up. "
                     "Immutable and thread-safe.")

@@ -86,7 +86,8 @@ TakenPoses::~TakenPoses() {
 
 py::tuple DeviceColumn::shape() const {
   const std::size_t count = answers->results.size();
-  return width == 0 ? py::make_tuple(count) : py::make_tuple(count, width);
+  if (width == 0) return py::make_tuple(count);
+  return py::make_tuple(count, width);
 }
 
 py::capsule DeviceColumn::dlpack(const py::object& stream) const {
