@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+#include <string>
+
 #include "libvpm/core/error.h"
 #include "tests/refusal.h"
+#include "tools/bench/peers/fcl_pair.h"
 
 namespace vpm::bench {
 namespace {
@@ -45,9 +50,9 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
   refuses(
       "timing", [](SuiteOptions& o) { o.all = true; }, "accuracy, packing, scaling");
   refuses(
-      "accuracy", [](SuiteOptions& o) { o.meshes = "folder"; }, "packing, pairs");
+      "accuracy", [](SuiteOptions& o) { o.meshes = "folder"; }, "packing, pairs, peers");
   refuses(
-      "extremes", [](SuiteOptions& o) { o.data = "folder"; }, "accuracy, replay, timing");
+      "extremes", [](SuiteOptions& o) { o.data = "folder"; }, "accuracy, peers, replay, timing");
   refuses(
       "tradeoff", [](SuiteOptions& o) { o.noise_seed = 2; }, "accuracy");
   refuses(
@@ -58,7 +63,7 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
 
 // Refuses before minutes of measuring.
 TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
-  for (const char* name : {"accuracy", "timing"}) {
+  for (const char* name : {"accuracy", "peers", "timing"}) {
     SuiteOptions options;
     options.all = name == std::string("accuracy");  // accuracy reads the folder with --all only
     options.data = "/nowhere";
@@ -93,6 +98,39 @@ TEST(Extremes, AreRightOrRefused) {
     }
   }
   EXPECT_EQ(report.failure, "");
+}
+
+// Every peer contends in its kinds of scenes, with a setting for the larger budget, and tells what
+// it can tell; the measure keeps to the truth.
+TEST(Peers, StandBesideTheMeasure) {
+  SuiteOptions options;
+  options.quick = true;
+  const Report report = run_suite("peers", options);
+  std::map<std::string, std::set<std::string>> kinds;
+  for (const nlohmann::json& r : report.results) {
+    kinds[r["peer"].get<std::string>()].insert(r["kind"].get<std::string>());
+    EXPECT_TRUE(r["volume"].is_object() || r["force"].is_object()) << r;
+    EXPECT_EQ(r["force"].is_null(), r["torque"].is_null()) << r;
+    EXPECT_GT(r["median_us"].get<double>(), 0) << r;
+    EXPECT_GT(r["bytes"].get<double>(), 0) << r;
+    if (r["peer"] == "vpm") {
+      EXPECT_LE(r["volume"]["worst"].get<double>(), .01) << r;
+      EXPECT_LE(r["force"]["worst"].get<double>(), .02) << r;
+    }
+    if (r["kind"] == "walls" && r["force"].is_object()) {
+      EXPECT_GT(r["jitter"]["mean"].get<double>(), 0) << r;
+    }
+  }
+  using Kinds = std::set<std::string>;
+  const Kinds depth{"walls", "clutter"}, all{"walls", "clutter", "pairs"}, pairs{"pairs"};
+  for (const char* name : {"vpm", "pointshell, flat", "pointshell, tree",
+                           "pointshell, nested levels", "voxels in the field"})
+    EXPECT_EQ(kinds[name], all) << name;
+  for (const char* name : {"distance grid, penalty of pixels", "OpenVDB, count behind pixels"})
+    EXPECT_EQ(kinds[name], depth) << name;
+  EXPECT_EQ(kinds["spheres against spheres"], pairs);
+  EXPECT_EQ(kinds["FCL, contacts"], kHasFcl ? pairs : Kinds{});
+  EXPECT_EQ(report.settings["fcl"], kHasFcl);
 }
 
 // Every pair of the suite closes and is right, and each is timed.

@@ -1,7 +1,5 @@
 // Suite of several cameras around one scene: errors of one to four cameras, as they are and with
 // noise, holes and wrong poses, also after these were registered; and the time of queries.
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +16,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/random_poses.h"
+#include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
 
 namespace vpm::bench {
@@ -212,12 +211,6 @@ std::vector<Pose> way_into(const CameraScene& scene, const PackedSolid& tool, st
   for (int k = 0; k < poses; ++k)
     path.push_back(pose(first + kStep + (last - first - kStep) * k / (poses - 1)));
   return path;
-}
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 // What a tool's path into a scene should measure, and what so many cameras can know of it.

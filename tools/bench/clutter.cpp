@@ -7,41 +7,16 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/synthetic/render.h"
-#include "libvpm/synthetic/surface.h"
 #include "tools/bench/random_poses.h"
 
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kClutterNoiseSeed = 11, kThingSeed = 12, kClutterHoleSeed = 13,
-                        kClutterPoseSeed = 14;
+constexpr std::uint64_t kThingSeed = 12, kClutterHoleSeed = 13, kClutterPoseSeed = 14;
 
 // Returns a number of a bell-shaped distribution, -2 to 2.
 double within_two(synthetic::NormalNumbers& numbers) {
   return std::clamp(numbers.next(), -2.0, 2.0);
-}
-
-// Returns a table, tilted toward the camera, with things in rows and columns above it that do not
-// touch each other.
-synthetic::SurfacePtr make_table() {
-  constexpr int kColumns = 6, kRows = 4;
-  constexpr double kApart = 0.14, kSmallest = 0.025, kSpread = 0.006;  // m
-  const Vec3 up = normalized_or_zero({0, -0.5, -1}), middle{0, 0, 0.85};
-  const Vec3 across{1, 0, 0}, along = cross(up, across);
-  std::vector<synthetic::SurfacePtr> parts{synthetic::make_wall(middle, up)};
-  for (int k = 0; k < kColumns * kRows; ++k) {
-    synthetic::NormalNumbers numbers(kThingSeed, static_cast<std::uint64_t>(k));
-    const double size = kSmallest + kSpread * (2 + within_two(numbers));
-    const double x = kApart * (k % kColumns - 0.5 * (kColumns - 1)),
-                 y = kApart * (k / kColumns - 0.5 * (kRows - 1));
-    const Vec3 at = middle + x * across + y * along + 1.8 * size * up;
-    if (k % 3 == 0)
-      parts.push_back(synthetic::make_ball(at, size));
-    else
-      parts.push_back(
-          synthetic::make_block({size, 2 * size, 1.5 * size}, {random_rotation(numbers), at}));
-  }
-  return synthetic::make_union(std::move(parts));
 }
 
 // Unsets the pixels to the right of nearer ones, as far as the shadow of what is nearer falls.
@@ -77,10 +52,33 @@ void unset_holes(DepthImage& image) {
 
 }  // namespace
 
-Cloud make_clutter() {
+// A table, tilted toward the camera, with things in rows and columns above it that do not touch
+// each other.
+synthetic::SurfacePtr clutter_surface() {
+  constexpr int kColumns = 6, kRows = 4;
+  constexpr double kApart = 0.14, kSmallest = 0.025, kSpread = 0.006;  // m
+  const Vec3 up = normalized_or_zero({0, -0.5, -1}), middle{0, 0, 0.85};
+  const Vec3 across{1, 0, 0}, along = cross(up, across);
+  std::vector<synthetic::SurfacePtr> parts{synthetic::make_wall(middle, up)};
+  for (int k = 0; k < kColumns * kRows; ++k) {
+    synthetic::NormalNumbers numbers(kThingSeed, static_cast<std::uint64_t>(k));
+    const double size = kSmallest + kSpread * (2 + within_two(numbers));
+    const double x = kApart * (k % kColumns - 0.5 * (kColumns - 1)),
+                 y = kApart * (k / kColumns - 0.5 * (kRows - 1));
+    const Vec3 at = middle + x * across + y * along + 1.8 * size * up;
+    if (k % 3 == 0)
+      parts.push_back(synthetic::make_ball(at, size));
+    else
+      parts.push_back(
+          synthetic::make_block({size, 2 * size, 1.5 * size}, {random_rotation(numbers), at}));
+  }
+  return synthetic::make_union(std::move(parts));
+}
+
+Cloud make_clutter(std::uint64_t noise_seed) {
   constexpr double kBaseline = 0.075;  // m, between camera and projector
   const Camera camera = synthetic::default_camera();
-  DepthImage image = synthetic::render_with_kinect_noise(*make_table(), camera, kClutterNoiseSeed);
+  DepthImage image = synthetic::render_with_kinect_noise(*clutter_surface(), camera, noise_seed);
   unset_shadows(image, camera.intrinsics.fx * kBaseline);
   unset_holes(image);
   return assemble_cloud(image, camera, estimate_normals(image, camera.intrinsics, {}));

@@ -29,12 +29,13 @@ void declare(CLI::App& app, Arguments& a) {
                "million spheres");
   app.add_option(
          "--meshes", a.meshes,
-         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply; pairs: of those "
-         "and spot.obj, as far as they are there")
+         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply; pairs, peers: of "
+         "those and spot.obj, as far as they are there")
       ->option_text("FOLDER");
-  app.add_option("--data", a.data,
-                 "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; "
-                 "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames")
+  app.add_option(
+         "--data", a.data,
+         "accuracy --all, peers, replay, timing: folder whose depth/ holds recorded depth "
+         "images; replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames")
       ->option_text("FOLDER");
   tools::begin_group(app, "Accuracy", tools::Group::rare);
   app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")

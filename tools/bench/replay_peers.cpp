@@ -39,29 +39,30 @@ Rectangle pixels_of(const Box& box, const Pose& to_camera, const Camera& camera)
           std::min(within(v1, camera.height) + 1, static_cast<int>(camera.height) - 1)};
 }
 
-openvdb::FloatGrid::Ptr distances_of(const Solid& solid, double voxel) {
+openvdb::FloatGrid::Ptr distances_of(const Solid& solid, double voxel, int voxels) {
   openvdb::initialize();
   std::vector<openvdb::Vec3s> points;
   for (const Vec3& v : solid.vertices)
     points.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   std::vector<openvdb::Vec3I> triangles;
   for (const Triangle& t : solid.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  // Widths of the band in voxels; kDeepest exceeds every distance inside.
-  constexpr float kOutside = 3, kDeepest = kPeerVoxels;
+  // Widths of the band in voxels; the inner one exceeds every distance inside.
+  constexpr float kOutside = 3;
+  const auto deepest = static_cast<float>(voxels);
   return openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
       *openvdb::math::Transform::createLinearTransform(voxel), points, triangles, {}, kOutside,
-      kDeepest);
+      deepest);
 }
 
 }  // namespace
 
 class Voxels {
  public:
-  explicit Voxels(const Solid& solid) {
+  Voxels(const Solid& solid, int voxels) {
     for (const Vec3& v : solid.vertices) box.add(v);
     const Vec3 side = box.size();
-    size = std::max({side.x, side.y, side.z}) / kPeerVoxels;
-    grid = distances_of(solid, size);
+    size = std::max({side.x, side.y, side.z}) / voxels;
+    grid = distances_of(solid, size, voxels);
     leaves = std::make_unique<Leaves>(grid->tree());
     const openvdb::CoordBBox bounds = grid->evalActiveVoxelBoundingBox();
     dense = std::make_unique<Dense>(bounds);
@@ -109,8 +110,14 @@ PixelCloud make_pixel_cloud(const DepthImage& depth, const Camera& camera) {
   return cloud;
 }
 
-Peers::Peers(const Solid& solid) : voxels_(std::make_unique<const Voxels>(solid)) {}
+Peers::Peers(const Solid& solid, int voxels)
+    : voxels_(std::make_unique<const Voxels>(solid, voxels)) {}
 Peers::~Peers() = default;
+
+std::size_t Peers::bytes(bool of_count) const {
+  return of_count ? static_cast<std::size_t>(voxels_->grid->memUsage())
+                  : static_cast<std::size_t>(voxels_->dense->memUsage());
+}
 
 Wrench Peers::penalty(const PixelCloud& cloud, const Pose& tool_to_camera) const {
   const Voxels& grid = *voxels_;

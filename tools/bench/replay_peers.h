@@ -21,14 +21,14 @@ struct PixelCloud {
 };
 PixelCloud make_pixel_cloud(const DepthImage& depth, const Camera& camera);
 
-// Voxels along the solid's longest side in its distance grid, made by OpenVDB.
+// Usual number of voxels along the solid's longest side in its distance grid, made by OpenVDB.
 inline constexpr int kPeerVoxels = 128;
 class Voxels;
 
 class Peers {
  public:
   // Builds the tool's grids, once.
-  explicit Peers(const Solid& solid);
+  explicit Peers(const Solid& solid, int voxels = kPeerVoxels);
   ~Peers();
 
   // Returns the penalty force of the points that lie in the tool: the sum of each point's distance,
@@ -39,6 +39,9 @@ class Peers {
   // Returns the volume of the tool's voxels that lie behind the depth of their pixel, m^3. Gives no
   // force.
   double count_voxels(const PixelCloud& cloud, const Pose& tool_to_camera) const;
+
+  // Returns the memory of the grid that is read: OpenVDB's, which is counted, or the dense one.
+  std::size_t bytes(bool of_count) const;
 
  private:
   std::unique_ptr<const Voxels> voxels_;

@@ -1,9 +1,12 @@
-// Order statistics of measured samples.
+// Order statistics of measured samples, and the clock that takes them.
 #pragma once
 
 #include <vector>
 
 namespace vpm::bench {
+
+// Returns the CPU time that this thread has used, s: other processes do not add to it.
+double thread_seconds();
 
 struct Spread {
   double median = 0, quartile1 = 0, quartile3 = 0, min = 0, max = 0;

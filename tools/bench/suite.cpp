@@ -27,6 +27,7 @@ constexpr Suite kSuites[] = {
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
     {"pairs", run_pairs, kMeshes},
+    {"peers", run_peers, kMeshes | kData},
     {"replay", run_replay, kData, Place::either},
     {"scaling", run_scaling, kAll, Place::device},
     {"timing", run_timing, kData},

@@ -20,9 +20,11 @@ struct SuiteOptions {
   // accuracy: every tool, scene and kind of cloud; packing, scaling: a million spheres
   bool all = false;
   std::function<void(double fraction)> progress;
-  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply; pairs: those that are there
+  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply; pairs, peers: those that
+  // are there
   std::string meshes = {};
-  // accuracy --all, timing: folder of recorded depth images; replay: the same, or a recording
+  // accuracy --all, peers, timing: folder of recorded depth images; replay: the same, or a
+  // recording
   std::string data = {};
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: seed of the noise
@@ -66,6 +68,11 @@ Report run_packing(const SuiteOptions& options);
 // Compares pairs of solids with the truth and times them. Sets `failure` where a volume is wrong by
 // more than a millionth of the smaller solid.
 Report run_pairs(const SuiteOptions& options);
+
+// Puts voxmap-pointshell, distance grids, OpenVDB, FCL and spheres against spheres beside the
+// measure: errors, jitter, memory and time before walls, in clutter, in recorded rooms and between
+// solids, with one thread or with `threads`.
+Report run_peers(const SuiteOptions& options);
 
 // Runs a haptic loop on a recorded stream: queries of warm and cold clouds beside hand-written
 // alternatives, coherent poses, preparation of frames, a path through the stream, a soak of 10^6

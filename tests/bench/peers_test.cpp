@@ -1,0 +1,170 @@
+// Peers are implemented fairly: refined, they come to the truth; what is meant to be faster gives
+// the same answer.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/synthetic/render.h"
+#include "libvpm/synthetic/scenes.h"
+#include "libvpm/synthetic/shapes.h"
+#include "libvpm/synthetic/shared_volume.h"
+#include "libvpm/synthetic/truth.h"
+#include "tools/bench/peers/fcl_pair.h"
+#include "tools/bench/peers/shells.h"
+#include "tools/bench/peers/sphere_pair.h"
+#include "tools/bench/penetration_case.h"
+
+namespace vpm::bench {
+namespace {
+
+std::shared_ptr<const DistanceField> field_of(const synthetic::Surface& surface, double voxel) {
+  Box box;
+  for (const double side : {-.09, .09}) box.add({side, side, 1 + side});
+  return std::make_shared<const DistanceField>(box, voxel,
+                                               [&](Vec3 x) { return surface.distance(x); });
+}
+
+// A torus with part of its tube in a scene.
+class ShellBefore : public testing::TestWithParam<const char*> {
+ protected:
+  PeerAnswer answer(double spacing, double voxel, ShellWalk walk, double deadline = 0) const {
+    ShellPeer peer(std::make_shared<const PointShell>(tool_, spacing),
+                   field_of(*scene_.surface, voxel), walk, deadline);
+    return peer.query(pose_);
+  }
+
+  const synthetic::Scene scene_ = synthetic::make_scene(GetParam());
+  const Solid tool_ = synthetic::make_torus(.04, .02, 48, 32);
+  const Pose pose_{turned(), {.01, -.02, .98}};
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, ShellBefore, testing::Values("wall", "tilted-wall", "ball"),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST_P(ShellBefore, HasForcesThatConvergeToTheTruth) {
+  const synthetic::TrueSolid tool(tool_);
+  const synthetic::Penetration truth = tool.penetration(pose_, *scene_.surface);
+  ASSERT_GT(truth.volume, .02 * tool.mass().volume);
+  const auto error = [&](int parts) {
+    const PeerAnswer a = answer(tool.radius() / parts, tool.radius() / 30, ShellWalk::flat);
+    return std::max(norm(a.wrench.force - truth.force),
+                    norm(a.wrench.torque - truth.torque) / tool.radius()) /
+           norm(truth.force);
+  };
+  const double coarse = error(6), fine = error(100);
+  EXPECT_LT(coarse, .2);
+  EXPECT_LT(fine, .005);
+  EXPECT_LT(fine, .2 * coarse);
+}
+
+TEST_P(ShellBefore, HasTheSameContactsInATree) {
+  for (const double spacing : {.01, .002}) {
+    const PeerAnswer flat = answer(spacing, .002, ShellWalk::flat),
+                     tree = answer(spacing, .002, ShellWalk::tree),
+                     levels = answer(spacing, .002, ShellWalk::nested, 1e9);
+    EXPECT_GT(flat.contacts, 10U);
+    for (const PeerAnswer& other : {tree, levels}) {
+      EXPECT_EQ(other.contacts, flat.contacts);
+      EXPECT_NEAR(other.volume, flat.volume, 1e-4 * flat.volume);
+      EXPECT_LT(norm(other.wrench.force - flat.wrench.force), 1e-4 * norm(flat.wrench.force));
+    }
+  }
+}
+
+// Out of time, few points stand for many: the answer is rough, but it is one.
+TEST_P(ShellBefore, AnswersByItsCoarseLevelsOutOfTime) {
+  const PeerAnswer fine = answer(.002, .002, ShellWalk::flat),
+                   rough = answer(.002, .002, ShellWalk::nested, 0);
+  EXPECT_LT(rough.contacts, fine.contacts / 4);
+  EXPECT_FALSE(std::isnan(rough.wrench.force.x));
+}
+
+TEST(PointShell, HasThePlanesVolumeAndTheToolsArea) {
+  const Solid cube = synthetic::make_cube(.1);
+  const auto shell = std::make_shared<const PointShell>(cube, .004);
+  double area = 0;
+  for (const PointShell::Point& p : shell->points()) area += norm(widen(p.area));
+  EXPECT_NEAR(area, .06, 1e-6);
+  EXPECT_LT(shell->points().size(), 1.3 * .06 / (.004 * .004));
+  ShellPeer peer(shell, field_of(*synthetic::make_scene("wall").surface, .005), ShellWalk::tree);
+  EXPECT_NEAR(peer.query({{}, {0, 0, .98}}).volume, .1 * .1 * .03, 1e-3 * .1 * .1 * .1);
+  EXPECT_EQ(peer.query({{}, {0, 0, .94}}).volume, 0);
+}
+
+TEST(DistanceField, OfPointsIsThatOfTheirSurface) {
+  for (const char* name : {"tilted-wall", "ball"}) {
+    const synthetic::Scene scene = synthetic::make_scene(name);
+    const Cloud cloud =
+        make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{});
+    Box box;
+    for (const double side : {-.1, .1}) box.add({side, side, 1 + side});
+    const DistanceField field = DistanceField::of_points(cloud, box, .004);
+    const auto to_voxels = field.to_voxels({});
+    for (const double x : {-.03, .0, .04})
+      for (const double z : {.96, .99, 1.02, 1.05}) {
+        const Vec3 place{x, .02, z};
+        const auto [distance, gradient] = field.sample(to_voxels(narrow(place)));
+        EXPECT_NEAR(distance, scene.surface->distance(place), 4e-4) << name << x << ' ' << z;
+        EXPECT_GT(dot(widen(gradient), scene.surface->gradient(place)), .98) << name;
+      }
+  }
+}
+
+TEST(VoxelCount, ComesToTheVolume) {
+  const auto wall = field_of(*synthetic::make_scene("wall").surface, .002);
+  for (const double deep : {.0, .03, .05}) {
+    VoxelCountPeer peer(voxels_of(synthetic::make_cube(.1), 50), wall);
+    EXPECT_NEAR(peer.query({{}, {0, 0, .95 + deep}}).volume, .1 * .1 * deep, 1.1e-2 * 1e-3);
+  }
+}
+
+TEST(SpherePair, SharesWhatTwoBallsShare) {
+  const Solid a = synthetic::make_icosphere(.05, 5);
+  for (const double apart : {.02, .05, .07}) {
+    Solid b = synthetic::make_icosphere(.03, 5);
+    for (Vec3& v : b.vertices) v.x += apart;
+    EXPECT_NEAR(shared_by_balls(.05, .03, apart), synthetic::shared_volume(a, b), 1e-6) << apart;
+  }
+  EXPECT_EQ(shared_by_balls(.05, .03, .09), 0);
+}
+
+// The hierarchies leave out no pair of spheres.
+TEST(SpherePair, SumsAllPairsOfSpheres) {
+  const Solid cube = synthetic::make_cube(.1);
+  const ToolModel model = make_tool(cube, {60});
+  const Pose pose{turned(), {.07, .02, -.01}};
+  const PeerAnswer answer = SpherePairPeer(model, model, 60).query(pose);
+  double volume = 0;
+  std::size_t pairs = 0;
+  for (const Sphere& a : model.spheres)
+    for (const Sphere& b : model.spheres) {
+      const double apart = norm(pose * a.center - b.center);
+      volume += shared_by_balls(a.radius, b.radius, apart);
+      pairs += apart < a.radius + b.radius;
+    }
+  EXPECT_EQ(answer.contacts, pairs);
+  EXPECT_NEAR(answer.volume, volume, 1e-9 * volume);
+  EXPECT_GT(answer.wrench.force.x, 0);  // away from the other
+}
+
+TEST(FclPair, PushesTheToolAwayWhereThereIsFcl) {
+  const Solid cube = synthetic::make_cube(.1);
+  const std::unique_ptr<Peer> fcl = make_fcl_pair(cube, cube);
+  ASSERT_EQ(fcl != nullptr, kHasFcl);
+  if (!fcl) return;
+  EXPECT_EQ(fcl->query({turned(), {.3, 0, 0}}).contacts, 0U);
+  const PeerAnswer answer = fcl->query({turned(), {.09, .01, .02}});
+  EXPECT_GT(answer.contacts, 0U);
+  EXPECT_GT(answer.wrench.force.x, 0);
+  EXPECT_TRUE(std::isnan(answer.volume));
+  EXPECT_GT(fcl->bytes(), 24 * sizeof(Vec3));
+}
+
+}  // namespace
+}  // namespace vpm::bench

@@ -1,0 +1,133 @@
+#include "tools/bench/peers/distance_field.h"
+
+#include <cstdint>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/core/pose.h"
+
+namespace vpm::bench {
+namespace {
+
+// The mean of a voxel's points, and of their normals.
+struct Surfel {
+  Vec3 point, normal;
+  double points = 0;
+};
+
+// Voxels by which a place may lie beside a surfel and be measured along its normal.
+constexpr double kBeside = 2;
+
+// Distance of a place from a surfel: along its normal beside it, else straight.
+double signed_distance(Vec3 place, const Surfel& surfel, double voxel) {
+  const Vec3 from = place - surfel.point;
+  const double along = dot(from, surfel.normal), squared = squared_norm(from);
+  const double beside = kBeside * voxel;
+  if (squared - along * along <= beside * beside) return along;
+  return std::copysign(std::sqrt(squared), along);
+}
+
+}  // namespace
+
+std::array<int, 3> DistanceField::count_of(const Box& box, double voxel) {
+  const auto samples = [&](double side) { return static_cast<int>(std::ceil(side / voxel)) + 2; };
+  const Vec3 size = box.size();
+  return {samples(size.x), samples(size.y), samples(size.z)};
+}
+
+std::size_t DistanceField::bytes_of(const Box& box, double voxel) {
+  std::size_t bytes = sizeof(float);
+  for (const int count : count_of(box, voxel)) bytes *= static_cast<std::size_t>(count);
+  return bytes;
+}
+
+DistanceField::DistanceField(const Box& box, double voxel)
+    : low_(box.low), voxel_(voxel), count_(count_of(box, voxel)) {
+  row_ = count_[0];
+  layer_ = row_ * count_[1];
+  samples_.resize(static_cast<std::size_t>(layer_) * static_cast<std::size_t>(count_[2]));
+}
+
+DistanceField::DistanceField(const Box& box, double voxel,
+                             const std::function<double(Vec3)>& distance)
+    : DistanceField(box, voxel) {
+  const auto layers = [&](std::size_t begin, std::size_t end) {
+    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k)
+      for (int j = 0; j < count_[1]; ++j)
+        for (int i = 0; i < count_[0]; ++i)
+          samples_[index(i, j, k)] = static_cast<float>(distance(place(i, j, k)));
+  };
+  parallel_for(static_cast<std::size_t>(count_[2]), 1, layers);
+}
+
+DistanceField DistanceField::of_points(const Cloud& cloud, const Box& box, double voxel) {
+  DistanceField field(box, voxel);
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::vector<std::uint32_t> nearest(field.samples_.size(), kNone);
+  std::vector<Surfel> surfels;
+  const auto [nx, ny, nz] = field.count_;
+  for (std::size_t p = 0; p < cloud.size(); ++p) {
+    const Vec3 point = cloud.origin + widen(cloud.positions[p]), at = (point - box.low) / voxel;
+    const int i = static_cast<int>(std::lround(at.x)), j = static_cast<int>(std::lround(at.y)),
+              k = static_cast<int>(std::lround(at.z));
+    if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) continue;
+    std::uint32_t& here = nearest[field.index(i, j, k)];
+    if (here == kNone) {
+      here = static_cast<std::uint32_t>(surfels.size());
+      surfels.emplace_back();
+    }
+    surfels[here].point += point;
+    surfels[here].normal += widen(cloud.normals[p]);
+    surfels[here].points += 1;
+  }
+  for (Surfel& s : surfels) s.point = s.point / s.points, s.normal = normalized_or_zero(s.normal);
+  // Each sweep passes nearest surfels on along one diagonal.
+  for (int sweep = 0; sweep < 8 && !surfels.empty(); ++sweep) {
+    const int si = sweep & 1 ? -1 : 1, sj = sweep & 2 ? -1 : 1, sk = sweep & 4 ? -1 : 1;
+    for (int c = 0; c < nz; ++c)
+      for (int b = 0; b < ny; ++b)
+        for (int a = 0; a < nx; ++a) {
+          const int i = si > 0 ? a : nx - 1 - a, j = sj > 0 ? b : ny - 1 - b,
+                    k = sk > 0 ? c : nz - 1 - c;
+          std::uint32_t& here = nearest[field.index(i, j, k)];
+          const Vec3 x = field.place(i, j, k);
+          double least = here == kNone ? HUGE_VAL : squared_norm(x - surfels[here].point);
+          const auto take = [&](bool is_there, int i2, int j2, int k2) {
+            if (!is_there) return;
+            const std::uint32_t other = nearest[field.index(i2, j2, k2)];
+            if (other == kNone || other == here) return;
+            const double squared = squared_norm(x - surfels[other].point);
+            if (squared < least) least = squared, here = other;
+          };
+          take(a > 0, i - si, j, k);
+          take(b > 0, i, j - sj, k);
+          take(c > 0, i, j, k - sk);
+        }
+  }
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const std::uint32_t s = nearest[field.index(i, j, k)];
+        field.samples_[field.index(i, j, k)] =
+            s == kNone
+                ? HUGE_VALF
+                : static_cast<float>(signed_distance(field.place(i, j, k), surfels[s], voxel));
+      }
+  return field;
+}
+
+DistanceField::ToVoxels DistanceField::to_voxels(const Pose& pose) const {
+  const double scale = 1 / voxel_;
+  return {narrow(scale * pose.rotation.row0), narrow(scale * pose.rotation.row1),
+          narrow(scale * pose.rotation.row2), narrow(scale * (pose.translation - low_))};
+}
+
+std::vector<Vec3f> DistanceField::places_inside() const {
+  std::vector<Vec3f> places;
+  for (int k = 0; k < count_[2]; ++k)
+    for (int j = 0; j < count_[1]; ++j)
+      for (int i = 0; i < count_[0]; ++i)
+        if (samples_[index(i, j, k)] < 0) places.push_back(narrow(place(i, j, k)));
+  return places;
+}
+
+}  // namespace vpm::bench
