@@ -358,6 +358,73 @@ def pairs(report):
                   "5 %: with force", "worst pose", "30 %: with force", "both, MB"], rows)
 
 
+KINDS = {"walls": "walls", "clutter": "clutter", "recorded": "recorded rooms", "pairs": "pairs of solids"}
+
+
+def of_peers(report, kind, budget):
+    """Returns of each peer the rows of the settings that it has within a budget, one for each scene, and the number of scenes."""
+    rows = [r for r in report["results"] if r["kind"] == kind]
+    peers = {r["peer"]: [] for r in rows}
+    for r in rows:
+        if budget in r["within_us"]:
+            peers[r["peer"]].append(r)
+    return peers, len({r["scene"] for r in rows})
+
+
+def mean_of(rows, what):
+    """Returns the mean over scenes, or None where the peer does not tell."""
+    told = [r[what]["mean"] for r in rows if r[what]]
+    return sum(told) / len(told) if told else None
+
+
+def peers(report):
+    def told(rows, what):
+        if mean_of(rows, what) is None:
+            return ""
+        return f"{percent(mean_of(rows, what))} / {percent(max(r[what]['worst'] for r in rows if r[what]), 2)}"
+
+    tables = []
+    for kind in KINDS:
+        for budget in report["settings"]["budgets_us"]:
+            by_peer, scenes = of_peers(report, kind, budget)
+            rows = []
+            for peer, fits in by_peer.items():
+                if not fits:
+                    rows.append([peer, "none is within"] + [""] * 6)
+                    continue
+                settings = list(dict.fromkeys(r["setting"] for r in fits))
+                setting = settings[0] if len(settings) == 1 else f"{settings[0]} to {settings[-1]}"
+                jitter = mean_of(fits, "jitter")
+                span = lambda key, scale, digits: " to ".join(dict.fromkeys(f"{scale * f(r[key] for r in fits):.{digits}f}" for f in (min, max)))
+                memory = span("bytes", 1e-6, 1) + ("" if all(r["bytes"] == r["bytes_of_view"] for r in fits) else f"; {span('bytes_of_view', 1e-6, 0)}")
+                rows.append([peer, setting + ("" if len(fits) == scenes else f" (in {len(fits)} of {scenes})"), told(fits, "volume"),
+                             told(fits, "force"), told(fits, "torque"), "" if jitter is None else percent(jitter), memory,
+                             f"{span('median_us', 1, 0)} [{max(r['p99_us'] for r in fits):.0f}]"])
+            if rows:
+                tables.append(table([f"{KINDS[kind]}, {scenes} scene{'s' if scenes > 1 else ''}, within {budget:.0f} µs", "setting", "volume", "force", "torque",
+                                     "jitter", "MB; of the view", "µs [p99]"], rows))
+    return "\n\n".join(tables)
+
+
+def peers_asked(report):
+    rows = []
+    for kind in KINDS:
+        for budget in report["settings"]["budgets_us"]:
+            by_peer, scenes = of_peers(report, kind, budget)
+            shells = {peer: fits for peer, fits in by_peer.items()
+                      if peer.startswith("pointshell") and "denoised" not in peer and len(fits) == scenes and mean_of(fits, "force") is not None}
+            ours = by_peer.get("vpm", [])
+            if not shells or len(ours) < scenes:
+                continue
+            peer, fits = min(shells.items(), key=lambda item: mean_of(item[1], "force"))
+            ratio = lambda of: "" if of(ours) is None else f"{of(fits) / of(ours):.2g}"
+            memory = lambda key: f"{sum(r[key] for r in ours) / sum(r[key] for r in fits):.2g}"
+            rows.append([f"{KINDS[kind]}, {budget:.0f} µs", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")),
+                         ratio(lambda r: mean_of(r, "torque")), ratio(lambda r: mean_of(r, "jitter")), memory("bytes"), memory("bytes_of_view")])
+    return table(["", "the shell with the least error of forces", "its error of the volume / ours", "force", "torque", "jitter / ours (asked: 5)",
+                  "our memory / its (asked: .1)", "with a field of the view"], rows)
+
+
 def threads(report):
     kinds = {"clear": "poses that touch nothing", "deep": "poses in the surface"}
     of = {(r["poses"], r["threads"]): r for r in report["results"]}
@@ -415,6 +482,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
              "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "python": (python, "python"),
              "list": (over_a_list, "list"), "list on GPUs": (list_on_gpus, "list_gpus"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
+             "peers asked": (peers_asked, "peers"), "peers": (peers, "peers"),
              "fuzz": (fuzz, "fuzz")}}
 
 

@@ -116,6 +116,34 @@ TEST(DistanceField, OfPointsIsThatOfTheirSurface) {
   }
 }
 
+// Beside an edge the nearest points' normals do not tell the side.
+TEST(DistanceField, HasNothingInsideWhereACameraSeesThatItIsFree) {
+  const synthetic::Scene scene = synthetic::make_scene("block");
+  const Cloud cloud = make_cloud(
+      synthetic::render_with_kinect_noise(*scene.surface, scene.camera, 1), scene.camera, {});
+  Box box;
+  box.add({.02, .02, .9}), box.add({.22, .22, 1.2});
+  constexpr double kVoxel = .004;
+  const DistanceField field = DistanceField::of_points(cloud, box, kVoxel);
+  const auto to_voxels = field.to_voxels({});
+  int free = 0, inside = 0;
+  for (double x = .03; x < .2; x += .01)
+    for (double y = .03; y < .2; y += .01)
+      for (double z = .91; z < 1.1; z += .01) {
+        const double truth = scene.surface->distance({x, y, z});
+        const float distance = field.distance(to_voxels(narrow({x, y, z})));
+        if (truth > 5 * kVoxel) {
+          EXPECT_GT(distance, 0) << x << ' ' << y << ' ' << z;
+          ++free;
+        } else if (truth < -5 * kVoxel) {
+          EXPECT_LT(distance, 0) << x << ' ' << y << ' ' << z;
+          ++inside;
+        }
+      }
+  EXPECT_GT(free, 100);
+  EXPECT_GT(inside, 100);
+}
+
 TEST(VoxelCount, ComesToTheVolume) {
   const auto wall = field_of(*synthetic::make_scene("wall").surface, .002);
   for (const double deep : {.0, .03, .05}) {

@@ -34,8 +34,8 @@ void declare(CLI::App& app, Arguments& a) {
       ->option_text("FOLDER");
   app.add_option(
          "--data", a.data,
-         "accuracy --all, peers, replay, timing: folder whose depth/ holds recorded depth "
-         "images; replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames")
+         "accuracy --all, peers, replay, timing: folder whose depth/ has recorded depth images; "
+         "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames")
       ->option_text("FOLDER");
   tools::begin_group(app, "Accuracy", tools::Group::rare);
   app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")

@@ -156,7 +156,7 @@ void run_contest(const Contest& contest, const SuiteOptions& options, nlohmann::
   {
     const std::vector<Contender> contenders = contest.contenders(0);
     std::vector<Record> records(contenders.size());
-    ask_poses(contest, options.quick ? 2 : 11, contenders, records);
+    ask_poses(contest, options.quick ? 2 : 9, contenders, records);
     ask_frames(contest, records);
     for (std::size_t c = 0; c < contenders.size(); ++c)
       made.push_back(row_of(contest, contenders[c], records[c]));

@@ -28,7 +28,7 @@ struct DepthTool {
         packed(
             make_packed(shape, levels, options.quick ? PackedSolid::kFewPlaces : kCountedPlaces)),
         shells(packed.solid.solid(), packed.model.radius, options.quick) {
-    for (const int voxels : options.quick ? std::vector{32} : std::vector{32, 64, 128}) {
+    for (const int voxels : options.quick ? std::vector{32} : std::vector{16, 32, 64}) {
       grids.push_back({voxels, std::make_shared<const Peers>(packed.solid.solid(), voxels)});
       solids.push_back(voxels_of(packed.solid.solid(), voxels));
     }

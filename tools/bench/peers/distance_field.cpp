@@ -26,6 +26,19 @@ double signed_distance(Vec3 place, const Surfel& surfel, double voxel) {
   return std::copysign(std::sqrt(squared), along);
 }
 
+// Says whether a camera sees a place clearly before the surface.
+bool is_seen_free(const CloudSensor& sensor, Vec3 place, double margin) {
+  const Camera& camera = sensor.camera;
+  const Vec3 at = inverse(camera.to_world) * place;
+  const double u = camera.intrinsics.fx * at.x / at.z + camera.intrinsics.cx + .5,
+               v = camera.intrinsics.fy * at.y / at.z + camera.intrinsics.cy + .5;
+  if (!(at.z > 0 && u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return false;
+  const float depth =
+      sensor.depth
+          .depth[sensor.depth.index(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v))];
+  return is_measured(depth) && at.z + margin < depth;
+}
+
 }  // namespace
 
 std::array<int, 3> DistanceField::count_of(const Box& box, double voxel) {
@@ -107,10 +120,11 @@ DistanceField DistanceField::of_points(const Cloud& cloud, const Box& box, doubl
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
         const std::uint32_t s = nearest[field.index(i, j, k)];
-        field.samples_[field.index(i, j, k)] =
-            s == kNone
-                ? HUGE_VALF
-                : static_cast<float>(signed_distance(field.place(i, j, k), surfels[s], voxel));
+        const Vec3 x = field.place(i, j, k);
+        double distance = s == kNone ? HUGE_VAL : signed_distance(x, surfels[s], voxel);
+        if (distance < 0 && cloud.sensor && is_seen_free(*cloud.sensor, x, kBeside * voxel))
+          distance = norm(x - surfels[s].point);
+        field.samples_[field.index(i, j, k)] = static_cast<float>(distance);
       }
   return field;
 }

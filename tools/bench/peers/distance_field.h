@@ -22,7 +22,8 @@ class DistanceField {
   // Makes the field of measured points with normals. The points of a voxel are averaged, which
   // takes out some noise; each sample takes the nearest of these averages, found by sweeps over the
   // grid, and its distance from the plane of that one where it lies beside it by less than two
-  // voxels. The normal tells the side, also where nothing was measured behind a surface.
+  // voxels. The normal tells the side, also where nothing was measured behind a surface; but what a
+  // camera sees clearly before the surface is free.
   static DistanceField of_points(const Cloud& cloud, const Box& box, double voxel);
 
   // A distance, m, and its gradient.

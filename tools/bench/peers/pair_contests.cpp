@@ -70,7 +70,7 @@ class PairContest {
         model_b_(make_tool(b_, levels_)),
         shells_(a_, surface_a_->reach(), options.quick),
         field_(field_of(*surface_b_)) {
-    for (const int voxels : options.quick ? std::vector{32} : std::vector{32, 64, 128})
+    for (const int voxels : options.quick ? std::vector{32} : std::vector{16, 32, 64})
       solids_.push_back({voxels, voxels_of(a_, voxels)});
     contest_.kind = "pairs", contest_.name = pair.name;
     contest_.volume = std::min(surface_a_->volume(), surface_b_->volume());

@@ -54,7 +54,7 @@ PointShell::PointShell(const Solid& solid, double spacing)
     Joined& to = joined[{voxel(middle.x), voxel(middle.y), voxel(middle.z), facing(area)}];
     to.moment += norm(area) * middle, to.area += area, to.total += norm(area);
   };
-  constexpr double kPieces = 3;  // along an edge of a voxel
+  constexpr double kPieces = 2;  // along an edge of a voxel
   for (const Triangle& t : solid.triangles)
     cut_triangle(solid.vertices[t[0]] - center_, solid.vertices[t[1]] - center_,
                  solid.vertices[t[2]] - center_, spacing / kPieces, add);
@@ -165,14 +165,15 @@ void ShellPeer::walk_tree(Sum& sum) {
   }
 }
 
-// Goes down level by level while the next one, which takes up to four times as long as the last,
-// will be done in time; then the nodes met last stand for their points.
+// Goes down level by level while the next one will be done in time, at the cost of a node so far,
+// and the sum after it; then the nodes met last stand for their points.
 void ShellPeer::walk_levels(Sum& sum) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   open_.assign(1, 0);
-  double before = 0;
+  std::size_t met = 1;  // nodes
+  const auto is_leaf = [&](std::uint32_t n) { return shell_->nodes()[n].children == 0; };
   for (bool goes_on = true; goes_on;) {
     next_.clear();
     goes_on = false;
@@ -184,9 +185,10 @@ void ShellPeer::walk_levels(Sum& sum) {
         next_.push_back(node.child + k), goes_on = true;
     }
     open_.swap(next_);
-    const double now = seconds(), level = now - before;
-    before = now;
-    if (now + kMost * level > deadline_) break;
+    const double now = seconds(), of_node = now / static_cast<double>(met),
+                 sums = !open_.empty() && is_leaf(open_[0]) ? kLeaf : 1;
+    if (now + (1 + sums) * of_node * static_cast<double>(open_.size()) > deadline_) break;
+    met += open_.size();
   }
   for (const std::uint32_t n : open_) {
     const PointShell::Node& node = shell_->nodes()[n];
