@@ -392,11 +392,14 @@ def peers(report):
                 if not fits:
                     rows.append([peer, "none is within"] + [""] * 6)
                     continue
-                settings = list(dict.fromkeys(r["setting"] for r in fits))
+                order = list(dict.fromkeys(r["setting"] for r in report["results"] if r["peer"] == peer))  # coarsest first
+                settings = sorted({r["setting"] for r in fits}, key=order.index)
                 setting = settings[0] if len(settings) == 1 else f"{settings[0]} to {settings[-1]}"
                 jitter = mean_of(fits, "jitter")
                 span = lambda key, scale, digits: " to ".join(dict.fromkeys(f"{scale * f(r[key] for r in fits):.{digits}f}" for f in (min, max)))
-                memory = span("bytes", 1e-6, 1) + ("" if all(r["bytes"] == r["bytes_of_view"] for r in fits) else f"; {span('bytes_of_view', 1e-6, 0)}")
+                memory = span("bytes", 1e-6, 1)
+                if any(r["bytes"] < r["bytes_of_view"] for r in fits):
+                    memory += f"; {span('bytes_of_view', 1e-6, 0)}"
                 rows.append([peer, setting + ("" if len(fits) == scenes else f" (in {len(fits)} of {scenes})"), told(fits, "volume"),
                              told(fits, "force"), told(fits, "torque"), "" if jitter is None else percent(jitter), memory,
                              f"{span('median_us', 1, 0)} [{max(r['p99_us'] for r in fits):.0f}]"])
@@ -410,14 +413,16 @@ def peers_asked(report):
     rows = []
     for kind in KINDS:
         for budget in report["settings"]["budgets_us"]:
-            by_peer, scenes = of_peers(report, kind, budget)
-            shells = {peer: fits for peer, fits in by_peer.items()
-                      if peer.startswith("pointshell") and "denoised" not in peer and len(fits) == scenes and mean_of(fits, "force") is not None}
+            by_peer, _ = of_peers(report, kind, budget)
             ours = by_peer.get("vpm", [])
-            if not shells or len(ours) < scenes:
+            scenes = {r["scene"] for r in ours}
+            shells = {peer: [r for r in fits if r["scene"] in scenes] for peer, fits in by_peer.items()
+                      if peer.startswith("pointshell") and "denoised" not in peer}
+            shells = {peer: fits for peer, fits in shells.items() if len(fits) == len(scenes) and mean_of(fits, "force") is not None}
+            if not shells or not ours:
                 continue
             peer, fits = min(shells.items(), key=lambda item: mean_of(item[1], "force"))
-            ratio = lambda of: "" if of(ours) is None else f"{of(fits) / of(ours):.2g}"
+            ratio = lambda of: "" if of(ours) is None else "> 1000" if of(fits) > 1000 * of(ours) else f"{of(fits) / of(ours):.2g}"
             memory = lambda key: f"{sum(r[key] for r in ours) / sum(r[key] for r in fits):.2g}"
             rows.append([f"{KINDS[kind]}, {budget:.0f} µs", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")),
                          ratio(lambda r: mean_of(r, "torque")), ratio(lambda r: mean_of(r, "jitter")), memory("bytes"), memory("bytes_of_view")])

@@ -205,13 +205,18 @@ class DepthContest {
   const Contest& contest() const { return contest_; }
 
  private:
-  // Returns the memory of a field that holds the tool wherever it touches what the camera sees.
+  // Returns the memory of a field that holds the tool wherever it touches what the camera sees
+  // within kArm of itself.
   std::size_t bytes_of_view() const {
+    constexpr double kArm = 2;  // m
     const Cloud cloud = cloud_(0);
+    const Vec3 eye = cloud.sensor->camera.to_world.translation;
     Box box;
     for (const Vec3f& place : cloud.positions)
       for (const double side : {-1.0, 1.0})
-        box.add(cloud.origin + widen(place) + side * contest_.radius * Vec3{1, 1, 1});
+        if (norm(cloud.origin + widen(place) - eye) < kArm)
+          box.add(cloud.origin + widen(place) + side * contest_.radius * Vec3{1, 1, 1});
+    if (!(box.low.x < box.high.x)) return 0;
     return DistanceField::bytes_of(box, tool_.shells.field_voxel(contest_.radius));
   }
 
@@ -275,7 +280,11 @@ void run_clutter(const DepthTool& tool, const SuiteOptions& options, const RunCo
 // the image, forces are not.
 void run_recorded(const DepthTool& tool, const SuiteOptions& options, const RunContest& run) {
   const double whole = tool.packed.solid.mass().volume;
+  std::string recording;
   for (const RecordedImage& image : recorded_images(options.data)) {
+    const std::string of = image.name.substr(0, image.name.find('/'));
+    if (of == recording) continue;  // frames of one recording are alike
+    recording = of;
     std::vector<Pose> poses;
     std::vector<PeerTruth> truth;
     constexpr std::uint64_t kMostTries = 100000;

@@ -22,18 +22,24 @@ using SurfacePtr = std::shared_ptr<const SolidSurface>;
 // The measure itself, of the first solid as the tool.
 class ExactPair : public Peer {
  public:
-  ExactPair(const SurfacePtr& a, const SurfacePtr& b) : a_(a), b_(b), pair_(a, b) {}
+  ExactPair(const SurfacePtr& a, const SurfacePtr& b, bool with_force)
+      : a_(a), b_(b), pair_(a, b), with_force_(with_force) {}
 
   PeerAnswer query(const Pose& pose) override {
-    const SharedSolid shared = pair_.measure(pose, {});
+    const SharedSolid shared = pair_.measure(pose, {}, with_force_);
+    PeerAnswer answer;
+    answer.volume = shared.volume;
+    if (!with_force_) return answer;
     const Vec3 arm = shared.centroid - pose * a_->center_of_mass();
-    return {shared.volume, {shared.force, shared.torque + cross(arm, shared.force)}, 0};
+    answer.wrench = {shared.force, shared.torque + cross(arm, shared.force)};
+    return answer;
   }
   std::size_t bytes() const override { return a_->bytes() + b_->bytes(); }
 
  private:
   SurfacePtr a_, b_;
   SolidPair pair_;
+  bool with_force_;
 };
 
 // Integrates the force of the depth below `other` over the shell's points inside, by the closest
@@ -63,7 +69,7 @@ class PairContest {
         b_(pair.b),
         surface_a_(std::make_shared<const SolidSurface>(a_)),
         surface_b_(std::make_shared<const SolidSurface>(b_)),
-        exact_(surface_a_, surface_b_),
+        exact_(surface_a_, surface_b_, false),
         levels_(options.quick ? std::vector<std::uint32_t>{30, 100}
                               : std::vector<std::uint32_t>{100, 300, 1000, 3000}),
         model_a_(make_tool(a_, levels_)),
@@ -148,8 +154,10 @@ class PairContest {
 
   std::vector<Contender> contenders() const {
     std::vector<Contender> all;
-    all.push_back(
-        {"vpm", "exact", std::make_unique<ExactPair>(surface_a_, surface_b_), false, &symmetric_});
+    for (const bool with_force : {true, false})
+      all.push_back({with_force ? "vpm" : "vpm, volume alone", "exact",
+                     std::make_unique<ExactPair>(surface_a_, surface_b_, with_force), false,
+                     &symmetric_});
     shells_.add_contenders(field_, one_sided_, all);
     for (const auto& [voxels, solid] : solids_)
       all.push_back({"voxels in the field", std::to_string(voxels) + " voxels",
