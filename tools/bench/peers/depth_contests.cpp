@@ -85,17 +85,18 @@ class MeasurePeer : public Peer {
     const Result result = query_.run(body_, pose);
     return {result.volume, result.wrench, 0};
   }
-  // The level; and the image, its pyramid, its points and normals, which only the measure as
-  // printed reads.
+  // The level; and of the image normals, measured depths and pyramid, and the points with their
+  // normals, which only the measure as printed reads.
   std::size_t bytes() const override {
     const Level& l = query_.level();
-    constexpr std::size_t kOfPixel = 32 + sizeof(Vec3f), kOfPoint = 2 * sizeof(Vec3f);
     const Camera& camera = body_.as<DepthBody>()->prepared().camera();
+    const std::size_t pixels = std::size_t{camera.width} * camera.height;
     return l.samples.size() * sizeof(CellSample) + l.blocks.size() * sizeof(CellBlock) +
            l.graph.neighbors.size() * sizeof(std::uint32_t) +
            l.hierarchy.nodes.size() * sizeof(HierarchyNode) +
            l.sphere_count * (sizeof(Sphere) + sizeof(Vec3) + 2 * sizeof(double)) +
-           std::size_t{camera.width} * camera.height * kOfPixel + body_.points() * kOfPoint;
+           pixels * (sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t)) +
+           pixels * sizeof(InverseDepthRange) * 4 / 3 + body_.points() * 2 * sizeof(Vec3f);
   }
 
  private:
