@@ -422,11 +422,13 @@ def peers_asked(report):
             if not shells or not ours:
                 continue
             peer, fits = min(shells.items(), key=lambda item: mean_of(item[1], "force"))
-            ratio = lambda of: "" if of(ours) is None else "> 1000" if of(fits) > 1000 * of(ours) else f"{of(fits) / of(ours):.2g}"
+            number = lambda x: "> 1000" if x > 1000 else f"{x:.0f}" if x >= 10 else f"{x:.2g}"
+            ratio = lambda of: "" if of(ours) is None else number(of(fits) / of(ours))
+            by_mean = number(mean_of([r["mean_above_ten"] for r in fits], "force") / mean_of(ours, "force"))
             memory = lambda key: f"{sum(r[key] for r in ours) / sum(r[key] for r in fits):.2g}"
-            rows.append([f"{KINDS[kind]}, {budget:.0f} µs", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")),
+            rows.append([f"{KINDS[kind]}, {budget:.0f} µs", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")), by_mean,
                          ratio(lambda r: mean_of(r, "torque")), ratio(lambda r: mean_of(r, "jitter")), memory("bytes"), memory("bytes_of_view")])
-    return table(["", "the shell with the least error of forces", "its error of the volume / ours", "force", "torque", "jitter / ours (asked: 5)",
+    return table(["", "the shell with the least error of forces", "its error of the volume / ours", "force (asked: 10)", "force by the mean above ten contacts", "torque", "jitter / ours (asked: 5)",
                   "our memory / its (asked: .1)", "with a field of the view"], rows)
 
 
