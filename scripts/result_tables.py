@@ -413,7 +413,7 @@ def peers_asked(report):
     rows = []
     for kind in KINDS:
         for budget in report["settings"]["budgets_us"]:
-            by_peer, _ = of_peers(report, kind, budget)
+            by_peer, all_scenes = of_peers(report, kind, budget)
             ours = by_peer.get("vpm", [])
             scenes = {r["scene"] for r in ours}
             shells = {peer: [r for r in fits if r["scene"] in scenes] for peer, fits in by_peer.items()
@@ -426,7 +426,8 @@ def peers_asked(report):
             ratio = lambda of: "" if of(ours) is None else number(of(fits) / of(ours))
             by_mean = number(mean_of([r["mean_above_ten"] for r in fits], "force") / mean_of(ours, "force"))
             memory = lambda key: f"{sum(r[key] for r in ours) / sum(r[key] for r in fits):.2g}"
-            rows.append([f"{KINDS[kind]}, {budget:.0f} µs", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")), by_mean,
+            part = "" if len(scenes) == all_scenes else f", {len(scenes)} of {all_scenes} scenes"
+            rows.append([f"{KINDS[kind]}, {budget:.0f} µs{part}", f"{peer}: {fits[0]['setting']}", ratio(lambda r: mean_of(r, "volume")), ratio(lambda r: mean_of(r, "force")), by_mean,
                          ratio(lambda r: mean_of(r, "torque")), ratio(lambda r: mean_of(r, "jitter")), memory("bytes"), memory("bytes_of_view")])
     return table(["", "the shell with the least error of forces", "its error of the volume / ours", "force (asked: 10)", "force by the mean above ten contacts", "torque", "jitter / ours (asked: 5)",
                   "our memory / its (asked: .1)", "with a field of the view"], rows)
