@@ -8,19 +8,13 @@
 namespace vpm::bench {
 namespace {
 
-// The mean of a voxel's points, and of their normals.
-struct Surfel {
-  Vec3 point, normal;
-  double points = 0;
-};
-
 // Voxels by which a place may lie beside a surfel and be measured along its normal.
 constexpr double kBeside = 2;
 
 // Distance of a place from a surfel: along its normal beside it, else straight.
-double signed_distance(Vec3 place, const Surfel& surfel, double voxel) {
-  const Vec3 from = place - surfel.point;
-  const double along = dot(from, surfel.normal), squared = squared_norm(from);
+double signed_distance(Vec3 place, Vec3 point, Vec3 normal, double voxel) {
+  const Vec3 from = place - point;
+  const double along = dot(from, normal), squared = squared_norm(from);
   const double beside = kBeside * voxel;
   if (squared - along * along <= beside * beside) return along;
   return std::copysign(std::sqrt(squared), along);
@@ -72,58 +66,82 @@ DistanceField::DistanceField(const Box& box, double voxel,
   parallel_for(static_cast<std::size_t>(count_[2]), 1, layers);
 }
 
-DistanceField DistanceField::of_points(const Cloud& cloud, const Box& box, double voxel) {
-  DistanceField field(box, voxel);
-  constexpr std::uint32_t kNone = 0xffffffffU;
-  std::vector<std::uint32_t> nearest(field.samples_.size(), kNone);
+// The surfels of a cloud, and for each sample the nearest that is known so far.
+struct DistanceField::Nearest {
+  // The mean of a voxel's points, and of their normals.
+  struct Surfel {
+    Vec3 point, normal;
+    double points = 0;
+  };
+  static constexpr std::uint32_t kNone = 0xffffffffU;
   std::vector<Surfel> surfels;
-  const auto [nx, ny, nz] = field.count_;
+  std::vector<std::uint32_t> of_sample;
+};
+
+DistanceField::Nearest DistanceField::surfels_of(const Cloud& cloud) const {
+  Nearest nearest{{}, std::vector<std::uint32_t>(samples_.size(), Nearest::kNone)};
   for (std::size_t p = 0; p < cloud.size(); ++p) {
-    const Vec3 point = cloud.origin + widen(cloud.positions[p]), at = (point - box.low) / voxel;
+    const Vec3 point = cloud.origin + widen(cloud.positions[p]), at = (point - low_) / voxel_;
     const int i = static_cast<int>(std::lround(at.x)), j = static_cast<int>(std::lround(at.y)),
               k = static_cast<int>(std::lround(at.z));
-    if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) continue;
-    std::uint32_t& here = nearest[field.index(i, j, k)];
-    if (here == kNone) {
-      here = static_cast<std::uint32_t>(surfels.size());
-      surfels.emplace_back();
+    if (i < 0 || j < 0 || k < 0 || i >= count_[0] || j >= count_[1] || k >= count_[2]) continue;
+    std::uint32_t& here = nearest.of_sample[index(i, j, k)];
+    if (here == Nearest::kNone) {
+      here = static_cast<std::uint32_t>(nearest.surfels.size());
+      nearest.surfels.emplace_back();
     }
-    surfels[here].point += point;
-    surfels[here].normal += widen(cloud.normals[p]);
-    surfels[here].points += 1;
+    Nearest::Surfel& surfel = nearest.surfels[here];
+    surfel.point += point, surfel.normal += widen(cloud.normals[p]), surfel.points += 1;
   }
-  for (Surfel& s : surfels) s.point = s.point / s.points, s.normal = normalized_or_zero(s.normal);
-  // Each sweep passes nearest surfels on along one diagonal.
-  for (int sweep = 0; sweep < 8 && !surfels.empty(); ++sweep) {
-    const int si = sweep & 1 ? -1 : 1, sj = sweep & 2 ? -1 : 1, sk = sweep & 4 ? -1 : 1;
-    for (int c = 0; c < nz; ++c)
-      for (int b = 0; b < ny; ++b)
-        for (int a = 0; a < nx; ++a) {
-          const int i = si > 0 ? a : nx - 1 - a, j = sj > 0 ? b : ny - 1 - b,
-                    k = sk > 0 ? c : nz - 1 - c;
-          std::uint32_t& here = nearest[field.index(i, j, k)];
-          const Vec3 x = field.place(i, j, k);
-          double least = here == kNone ? HUGE_VAL : squared_norm(x - surfels[here].point);
-          const auto take = [&](bool is_there, int i2, int j2, int k2) {
-            if (!is_there) return;
-            const std::uint32_t other = nearest[field.index(i2, j2, k2)];
-            if (other == kNone || other == here) return;
-            const double squared = squared_norm(x - surfels[other].point);
-            if (squared < least) least = squared, here = other;
-          };
-          take(a > 0, i - si, j, k);
-          take(b > 0, i, j - sj, k);
-          take(c > 0, i, j, k - sk);
-        }
-  }
-  for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        const std::uint32_t s = nearest[field.index(i, j, k)];
+  for (Nearest::Surfel& s : nearest.surfels)
+    s.point = s.point / s.points, s.normal = normalized_or_zero(s.normal);
+  return nearest;
+}
+
+// Goes through the samples along the diagonal (si, sj, sk), each of which takes over the surfels of
+// the three samples before it where they are nearer.
+void DistanceField::sweep(int si, int sj, int sk, Nearest& nearest) const {
+  const auto [nx, ny, nz] = count_;
+  for (int c = 0; c < nz; ++c)
+    for (int b = 0; b < ny; ++b)
+      for (int a = 0; a < nx; ++a) {
+        const int i = si > 0 ? a : nx - 1 - a, j = sj > 0 ? b : ny - 1 - b,
+                  k = sk > 0 ? c : nz - 1 - c;
+        std::uint32_t& here = nearest.of_sample[index(i, j, k)];
+        const Vec3 x = place(i, j, k);
+        const auto squared = [&](std::uint32_t s) {
+          return s == Nearest::kNone ? HUGE_VAL : squared_norm(x - nearest.surfels[s].point);
+        };
+        double least = squared(here);
+        const auto take = [&](bool is_there, int i2, int j2, int k2) {
+          if (!is_there) return;
+          const std::uint32_t other = nearest.of_sample[index(i2, j2, k2)];
+          if (other == here) return;
+          if (const double of_other = squared(other); of_other < least)
+            least = of_other, here = other;
+        };
+        take(a > 0, i - si, j, k);
+        take(b > 0, i, j - sj, k);
+        take(c > 0, i, j, k - sk);
+      }
+}
+
+DistanceField DistanceField::of_points(const Cloud& cloud, const Box& box, double voxel) {
+  DistanceField field(box, voxel);
+  Nearest nearest = field.surfels_of(cloud);
+  for (const int sk : {1, -1})
+    for (const int sj : {1, -1})
+      for (const int si : {1, -1}) field.sweep(si, sj, sk, nearest);
+  for (int k = 0; k < field.count_[2]; ++k)
+    for (int j = 0; j < field.count_[1]; ++j)
+      for (int i = 0; i < field.count_[0]; ++i) {
+        const std::uint32_t s = nearest.of_sample[field.index(i, j, k)];
         const Vec3 x = field.place(i, j, k);
-        double distance = s == kNone ? HUGE_VAL : signed_distance(x, surfels[s], voxel);
+        const bool is_near = s != Nearest::kNone;
+        const Nearest::Surfel of = is_near ? nearest.surfels[s] : Nearest::Surfel{};
+        double distance = is_near ? signed_distance(x, of.point, of.normal, voxel) : HUGE_VAL;
         if (distance < 0 && cloud.sensor && is_seen_free(*cloud.sensor, x, kBeside * voxel))
-          distance = norm(x - surfels[s].point);
+          distance = norm(x - of.point);
         field.samples_[field.index(i, j, k)] = static_cast<float>(distance);
       }
   return field;

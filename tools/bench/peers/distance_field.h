@@ -60,6 +60,9 @@ class DistanceField {
  private:
   DistanceField(const Box& box, double voxel);
   static std::array<int, 3> count_of(const Box& box, double voxel);
+  struct Nearest;
+  Nearest surfels_of(const Cloud& cloud) const;
+  void sweep(int si, int sj, int sk, Nearest& nearest) const;
   struct Cell {
     const float* first;
     Vec3f part;
