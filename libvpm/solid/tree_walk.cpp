@@ -22,14 +22,18 @@ using vpm::absolute, vpm::mask_of;
   return mask_of(halves[0]) | mask_of(halves[1]) << 4;
 }
 
-// Values for eight pairs of children: those of one node's four, twice, and those of two of the
-// other node's, from lane `first` on, four times each.
-[[gnu::always_inline]] inline Floats twice(const Float4& v) {
-  return Floats{v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]};
+// Returns a row of a node's bounds, and what follows it in the node: lanes that are not used.
+[[gnu::always_inline]] inline Floats row(const Float4& v) {
+  return load<Floats>(reinterpret_cast<const float*>(&v));
 }
-[[gnu::always_inline]] inline Floats fourfold(const Float4& v, int first) {
-  const float p = v[first], q = v[first + 1];
-  return Floats{p, p, p, p, q, q, q, q};
+// Values for eight pairs of children: those of one node's four, twice, and those of two of the
+// other node's, from lane `first` (0 or 2) on, four times each.
+[[gnu::always_inline]] inline Floats twice(const Floats& v) {
+  return __builtin_shuffle(v, Ints{0, 1, 2, 3, 0, 1, 2, 3});
+}
+[[gnu::always_inline]] inline Floats fourfold(const Floats& v, int first) {
+  return first == 0 ? __builtin_shuffle(v, Ints{0, 0, 0, 0, 1, 1, 1, 1})
+                    : __builtin_shuffle(v, Ints{2, 2, 2, 2, 3, 3, 3, 3});
 }
 
 // A node is opened alone where it is so many times as large as the other, else both are.
@@ -92,75 +96,84 @@ unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& 
 
 namespace {
 
-// What the tests of a node's children against those of several others share.
-struct Children {
-  std::array<Floats, 3> center, half, normal;
-  std::array<Floats, 3> along;   // halves of the boxes along the axes of the other's frame
-  std::array<Floats, 3> across;  // of the slabs' normals along these
-  Floats offset, width;
+// What the tests of a's children against b's share, in the lower lanes: b's bounds, in a's frame
+// and in its own, and a's along the axes of b's frame.
+struct Placed {
+  std::array<Floats, 3> center, normal, spread;  // of b; halves of its boxes along a's axes
+  std::array<Floats, 3> half;
+  Floats offset, width;                 // of b's slabs, from the centres of their boxes
+  std::array<Floats, 3> along, across;  // halves of a's boxes, and its normals
 };
 
-[[gnu::always_inline]] inline Children children_of(const SurfaceTree::Node& node,
-                                                   const FloatPose& pose) {
+[[gnu::always_inline]] inline Placed placed(const SurfaceTree::Node& a, const SurfaceTree::Node& b,
+                                            const FloatPose& pose) {
   const auto& r = pose.rotation;
   const auto& s = pose.size;
-  const auto &h = node.half, &n = node.normal;
-  Children all;
-  for (std::size_t j = 0; j < 3; ++j) {
-    all.center[j] = twice(node.center[j]), all.half[j] = twice(h[j]), all.normal[j] = twice(n[j]);
-    all.along[j] = twice(s[j] * h[0] + s[3 + j] * h[1] + s[6 + j] * h[2]);
-    all.across[j] = twice(absolute(r[j] * n[0] + r[3 + j] * n[1] + r[6 + j] * n[2]));
+  std::array<Floats, 3> c, n, own, own_n;
+  Placed at;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c[i] = row(b.center[i]), at.half[i] = row(b.half[i]), n[i] = row(b.normal[i]);
+    own[i] = row(a.half[i]), own_n[i] = row(a.normal[i]);
   }
-  all.offset = twice(node.offset), all.width = twice(node.width);
-  return all;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t k = 3 * i;
+    at.center[i] = r[k] * c[0] + r[k + 1] * c[1] + r[k + 2] * c[2] + pose.translation[i];
+    at.normal[i] = r[k] * n[0] + r[k + 1] * n[1] + r[k + 2] * n[2];
+    at.spread[i] = s[k] * at.half[0] + s[k + 1] * at.half[1] + s[k + 2] * at.half[2];
+    at.along[i] = s[i] * own[0] + s[3 + i] * own[1] + s[6 + i] * own[2];
+    at.across[i] = absolute(r[i] * own_n[0] + r[3 + i] * own_n[1] + r[6 + i] * own_n[2]);
+  }
+  at.offset = row(b.offset) - (n[0] * c[0] + n[1] * c[1] + n[2] * c[2]);
+  at.width = row(b.width);
+  return at;
 }
 
 // Tests the children of `a` against two of b, from `first` on. `pose` maps b's frame to a's.
-[[gnu::always_inline]] inline unsigned pairs_that_meet(const Children& a,
-                                                       const SurfaceTree::Node& b, int first,
-                                                       const FloatPose& pose) {
+[[gnu::always_inline]] inline unsigned pairs_that_meet(const SurfaceTree::Node& a, int first,
+                                                       const Placed& at, const FloatPose& pose) {
   const auto& r = pose.rotation;
-  const auto& s = pose.size;
-  std::array<Floats, 3> from, half, center, normal, d;  // b's bounds; but for `d` and two, in b's
-  std::array<Floats, 3> own_normal;
-  for (std::size_t i = 0; i < 3; ++i) {
-    from[i] = fourfold(b.center[i], first), half[i] = fourfold(b.half[i], first);
-    own_normal[i] = fourfold(b.normal[i], first);
-  }
+  std::array<Floats, 3> normal, d;  // of b's slabs, and between the centres of boxes
+  Floats height = -twice(row(a.offset)), reach = twice(row(a.width));  // of b's boxes in a's slabs
+  Floats size = fourfold(at.width, first);
   Ints meets{};
   meets = ~meets;
-  // Boxes along the axes of a's frame.
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t k = 3 * i;
-    center[i] = r[k] * from[0] + r[k + 1] * from[1] + r[k + 2] * from[2] + pose.translation[i];
-    normal[i] = r[k] * own_normal[0] + r[k + 1] * own_normal[1] + r[k + 2] * own_normal[2];
-    d[i] = a.center[i] - center[i];
-    meets &=
-        absolute(d[i]) <= a.half[i] + (s[k] * half[0] + s[k + 1] * half[1] + s[k + 2] * half[2]);
+    const Floats center = fourfold(at.center[i], first), own = twice(row(a.half[i]));
+    normal[i] = fourfold(at.normal[i], first);
+    d[i] = twice(row(a.center[i])) - center;
+    // Boxes along the axes of a's frame.
+    meets &= absolute(d[i]) <= own + fourfold(at.spread[i], first);
+    height += twice(row(a.normal[i])) * center;
+    reach += twice(at.across[i]) * fourfold(at.half[i], first);
+    size += absolute(normal[i]) * own;
   }
-  // b's slabs, about their boxes' centres.
-  const Floats offset =
-      fourfold(b.offset, first) -
-      (own_normal[0] * from[0] + own_normal[1] * from[1] + own_normal[2] * from[2]);
-  meets &= absolute(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] - offset) <=
-           fourfold(b.width, first) +
-               (absolute(normal[0]) * a.half[0] + absolute(normal[1]) * a.half[1] +
-                absolute(normal[2]) * a.half[2]);
-  // a's slabs.
-  meets &= absolute(a.normal[0] * center[0] + a.normal[1] * center[1] + a.normal[2] * center[2] -
-                    a.offset) <=
-           a.width + (a.across[0] * half[0] + a.across[1] * half[1] + a.across[2] * half[2]);
+  // Slabs of a, and of b.
+  meets &= absolute(height) <= reach;
+  meets &= absolute(normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] -
+                    fourfold(at.offset, first)) <= size;
   // Boxes along the axes of b's frame.
   for (std::size_t j = 0; j < 3; ++j)
-    meets &= absolute(r[j] * d[0] + r[3 + j] * d[1] + r[6 + j] * d[2]) <= half[j] + a.along[j];
+    meets &= absolute(r[j] * d[0] + r[3 + j] * d[1] + r[6 + j] * d[2]) <=
+             fourfold(at.half[j], first) + twice(at.along[j]);
   return mask_of(meets);
 }
 
 [[gnu::always_inline]] inline unsigned pairs_that_meet(const SurfaceTree::Node& a,
                                                        const SurfaceTree::Node& b,
                                                        const FloatPose& pose) {
-  const Children all = children_of(a, pose);
-  return pairs_that_meet(all, b, 0, pose) | pairs_that_meet(all, b, 2, pose) << 8;
+  const Placed at = placed(a, b, pose);
+  return pairs_that_meet(a, 0, at, pose) | pairs_that_meet(a, 2, at, pose) << 8;
+}
+
+}  // namespace
+
+namespace {
+
+// Asks for the memory of a node that is needed soon.
+[[gnu::always_inline]] inline void fetch(const SurfaceTree::Node& node) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof node; at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&node) + at);
 }
 
 }  // namespace
@@ -169,6 +182,10 @@ struct Children {
 // where their sizes are alike. A triangle has size 0.
 void TreeWalk::step(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned meets) {
   const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
+  const auto push = [&](const Place& next) __attribute__((always_inline)) {
+    fetch(a.nodes()[next.a]), fetch(b.nodes()[next.b]);
+    stack_.push_back(next);
+  };
   std::array<unsigned, 4> of_p{};  // b's children that meet a child of p, which is opened alone
   for (unsigned k = 0; meets != 0; ++k, meets >>= 4) {
     unsigned of_q = 0;  // a's children that meet q's child, which is opened alone
@@ -183,12 +200,12 @@ void TreeWalk::step(const SurfaceTree& a, const SurfaceTree& b, Place place, uns
       else if (size_q > kLarger * size_p)
         of_q |= 1u << l;
       else
-        stack_.push_back({child_p, child_q, 0xffff});
+        push({child_p, child_q, 0xffff});
     }
-    if (of_q != 0) stack_.push_back({place.a, q.child[k], of_q * 0x1111});
+    if (of_q != 0) push({place.a, q.child[k], of_q * 0x1111});
   }
   for (std::size_t l = 0; l < 4; ++l)
-    if (of_p[l] != 0) stack_.push_back({p.child[l], place.b, of_p[l] * 15});
+    if (of_p[l] != 0) push({p.child[l], place.b, of_p[l] * 15});
 }
 
 VPM_VECTOR_CLONES
