@@ -68,16 +68,15 @@ SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
 }
 
 void SolidSurface::prepare_depth() {
-  closest_ = std::make_unique<TriangleBvh>(tree_->vertices(), tree_->triangles());
   Box box;
   for (const Vec3& v : tree_->vertices()) box.add(v);
   grid_.emplace(
       box.low, box.high, kGridCells, [&](Vec3 x) { return holds(x); },
-      [&](Vec3 x, double within) { return closest_->closest(x, within).distance; });
+      [&](Vec3 x, double within) { return tree_->closest(x, within).distance; });
 }
 
 Depth SolidSurface::exact_depth(Vec3 x) const {
-  const SurfacePoint nearest = closest_->closest(x);
+  const SurfacePoint nearest = tree_->closest(x);
   const bool in = holds(x);
   const auto [a, b, c] = tree_->corners(nearest.triangle);
   const Vec3 out = x - nearest.point;
@@ -90,7 +89,7 @@ Depth SolidSurface::depth(Vec3 x) const {
   const Depth coarse = grid_->at(x);
   if (coarse.value > kNearCells * grid_->cell()) return coarse;
   const double within = std::max(coarse.value, 0.0) + kNearCells * grid_->cell();
-  const SurfacePoint nearest = closest_->closest(x, within);
+  const SurfacePoint nearest = tree_->closest(x, within);
   if (nearest.triangle == SurfacePoint::kNone) return coarse;
   const auto [a, b, c] = tree_->corners(nearest.triangle);
   const Vec3 normal = normalized_or_zero(cross(b - a, c - a)), out = x - nearest.point;
@@ -104,7 +103,7 @@ SphereState SolidSurface::state_of(Vec3 center, double radius) const {
   const double coarse = grid_->at(center).value, sure = radius + kWrongCells * grid_->cell();
   if (coarse > sure) return SphereState::inside;
   if (coarse < -sure) return SphereState::outside;
-  if (closest_->closest(center, radius).triangle != SurfacePoint::kNone)
+  if (tree_->closest(center, radius).triangle != SurfacePoint::kNone)
     return SphereState::boundary;
   return holds(center) ? SphereState::inside : SphereState::outside;
 }
@@ -112,9 +111,6 @@ SphereState SolidSurface::state_of(Vec3 center, double radius) const {
 std::size_t SolidSurface::bytes() const {
   std::size_t sum = tree_->bytes() + inside_->bytes();
   if (grid_) sum += grid_->bytes();
-  if (closest_)
-    sum += closest_->nodes().size() * sizeof closest_->nodes()[0] +
-           closest_->corners().size() * sizeof closest_->corners()[0];
   return sum;
 }
 

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/solid/depth_grid.h"
 #include "libvpm/solid/inside_index.h"
@@ -57,7 +56,6 @@ class SolidSurface {
   std::string hash_;
   std::unique_ptr<SurfaceTree> tree_;
   std::unique_ptr<InsideIndex> inside_;
-  std::unique_ptr<TriangleBvh> closest_;
   std::optional<DepthGrid> grid_;
 };
 

@@ -33,7 +33,7 @@ class SurfaceTree::Build {
     const Range all{0, static_cast<std::uint32_t>(order_.size())};
     add_node(0);
     ranges_.push_back(all);
-    if (all.size() > 1) add_children(all, 0);
+    if (all.size() > 1) add_children(all, 0, 1);
     std::vector<Triangle> sorted;
     for (const std::uint32_t t : order_) sorted.push_back(tree_.triangles_[t]);
     tree_.triangles_ = std::move(sorted);
@@ -72,6 +72,8 @@ class SurfaceTree::Build {
     double cost = HUGE_VAL;
   };
   static constexpr int kBins = 16;
+  // Level from which on ranges are halved, so that 2^31 triangles take kMostLevels.
+  static constexpr std::size_t kBalanced = kMostLevels - 17;
 
   static double half_area(const Box& box) {
     const Vec3 s = box.size();
@@ -136,17 +138,18 @@ class SurfaceTree::Build {
   }
 
   // Adds the node of a range of at least two triangles and all below it.
-  void add_children(Range range, std::uint32_t parent) {
+  void add_children(Range range, std::uint32_t parent, std::size_t level) {
     const std::uint32_t node = add_node(parent);
     ranges_.push_back(range);
     std::vector<Range> parts;
-    const auto [left, right] = halves(range);
+    const auto split = [&](Range r) { return level < kBalanced ? halves(r) : halves_of_list(r); };
+    const auto [left, right] = split(range);
     for (const Range half : {left, right}) {
       if (half.size() == 1) {
         parts.push_back(half);
         continue;
       }
-      const auto [low, high] = halves(half);
+      const auto [low, high] = split(half);
       parts.push_back(low);
       parts.push_back(high);
     }
@@ -154,7 +157,7 @@ class SurfaceTree::Build {
       const bool is_leaf = parts[k].size() == 1;
       const auto next = static_cast<std::uint32_t>(tree_.nodes_.size());
       tree_.nodes_[node].child[k] = is_leaf ? kLeaf | parts[k].begin : next;
-      if (!is_leaf) add_children(parts[k], node);
+      if (!is_leaf) add_children(parts[k], node, level + 1);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/solid/surface_moments.h"
 
@@ -23,6 +24,8 @@ class SurfaceTree {
  public:
   using Float4 = float __attribute__((vector_size(16)));
   static constexpr std::uint32_t kNone = 0xffffffffu, kLeaf = 0x80000000u;
+  // No path from the root is longer.
+  static constexpr std::size_t kMostLevels = 64;
 
   // Bounds of four children. A child is a node, kLeaf | triangle, or kNone. Node 0 has one child:
   // the whole surface.
@@ -70,6 +73,9 @@ class SurfaceTree {
   }
   // Returns the bounds of a child of a node.
   SurfaceBounds bounds(std::uint32_t node, std::uint32_t child) const;
+  // Returns the closest surface point nearer than `within`; triangle is SurfacePoint::kNone if there
+  // is none. Exact in double; of equally near triangles the choice is arbitrary but fixed.
+  SurfacePoint closest(Vec3 x, double within = std::numeric_limits<double>::infinity()) const;
   // Returns the bytes held.
   std::size_t bytes() const;
 
