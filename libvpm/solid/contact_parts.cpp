@@ -330,8 +330,8 @@ std::uint32_t ContactParts::join_whole(std::uint32_t role, std::uint32_t child) 
     return vertex(role, a);
   }
   const std::span<const std::uint32_t> around = rim(role, child);
-  const std::uint32_t first =
-      vertex(role, around.empty() ? tree.summaries()[child].vertex : around[0]);
+  const std::uint32_t any = tree.triangles()[tree.summaries()[child].first][0];
+  const std::uint32_t first = vertex(role, around.empty() ? any : around[0]);
   for (const std::uint32_t v : around) join(first, vertex(role, v));
   return first;
 }

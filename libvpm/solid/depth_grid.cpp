@@ -20,7 +20,8 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
   low_ = low - 0.5 * cell_ * Vec3{1, 1, 1};
   for (std::size_t k = 0; k < 3; ++k)
     count_[k] = static_cast<std::size_t>(coordinate(high - low_, static_cast<int>(k)) / cell_) + 3;
-  samples_.reserve(count_[0] * count_[1] * count_[2]);
+  std::vector<float> depths;
+  depths.reserve(count_[0] * count_[1] * count_[2]);
   for (std::size_t z = 0; z < count_[2]; ++z)
     for (std::size_t y = 0; y < count_[1]; ++y) {
       // The distance at a place bounds the next one's, which shortens the search.
@@ -32,9 +33,14 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
         const double band = in ? HUGE_VAL : kBandOutside * cell_, within = std::min(bound, band);
         const double found = std::min(distance(place, within), within);
         bound = found < band ? found + 1.01 * cell_ : HUGE_VAL;
-        samples_.push_back(static_cast<float>(in ? found : -found));
+        depths.push_back(static_cast<float>(in ? found : -found));
       }
     }
+  constexpr double kMost = 65535;
+  const auto [least, greatest] = std::ranges::minmax(depths);
+  least_ = least, step_ = (double{greatest} - least) / kMost;
+  for (const double depth : depths)
+    samples_.push_back(static_cast<std::uint16_t>(std::lround((depth - least_) / step_)));
 }
 
 Depth DepthGrid::at(Vec3 x) const {
@@ -49,16 +55,18 @@ Depth DepthGrid::at(Vec3 x) const {
     part[k] = inside - static_cast<double>(cell[k]);
   }
   const std::size_t y = count_[0], z = count_[0] * count_[1];
-  const float* s = samples_.data() + cell[0] + y * cell[1] + z * cell[2];
+  const std::uint16_t* s = samples_.data() + cell[0] + y * cell[1] + z * cell[2];
   const auto between = [](double from, double to, double t) { return from + t * (to - from); };
   const auto [tx, ty, tz] = part;
-  const double x00 = between(s[0], s[1], tx), x10 = between(s[y], s[y + 1], tx),
-               x01 = between(s[z], s[z + 1], tx), x11 = between(s[y + z], s[y + z + 1], tx);
+  // Along x, in whole numbers of steps.
+  const auto more = [s](std::size_t k) { return static_cast<double>(s[k + 1] - s[k]); };
+  const auto along = [&](std::size_t k) { return s[k] + tx * more(k); };
+  const double x00 = along(0), x10 = along(y), x01 = along(z), x11 = along(y + z);
   const double y0 = between(x00, x10, ty), y1 = between(x01, x11, ty);
-  const double along_x0 = between(double{s[1]} - s[0], double{s[y + 1]} - s[y], ty),
-               along_x1 = between(double{s[z + 1]} - s[z], double{s[y + z + 1]} - s[y + z], ty);
+  const double along_x0 = between(more(0), more(y), ty),
+               along_x1 = between(more(z), more(y + z), ty);
   const Vec3 gradient{between(along_x0, along_x1, tz), between(x10 - x00, x11 - x01, tz), y1 - y0};
-  return {between(y0, y1, tz), per_cell * gradient};
+  return {least_ + step_ * between(y0, y1, tz), per_cell * step_ * gradient};
 }
 
 }  // namespace vpm

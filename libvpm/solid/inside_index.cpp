@@ -8,10 +8,12 @@
 namespace vpm {
 namespace {
 
-// Cells along the longest side: columns of a few triangles each, up to 2 MB of states.
+// Cells along the longest side: columns of a few triangles each, up to half a megabyte of states.
 constexpr double kLeastCells = 16, kMostCells = 128, kCellsPerRootOfTriangles = 0.8;
 // Widening of triangles, in cells, before they are given to cells.
 constexpr double kMargin = 1e-5;
+// Steps of heights along z, over the whole surface.
+constexpr double kSteps = 65000;
 
 // Returns on which side of the line from a to b, seen along z, x lies. Both triangles of an edge
 // are told the same, also of places on it, since the lower index comes first.
@@ -20,14 +22,6 @@ bool is_left(std::uint32_t i, Vec3 a, std::uint32_t j, Vec3 b, Vec3 x) {
     return (q.x - p.x) * (x.y - p.y) - (q.y - p.y) * (x.x - p.x) >= 0;
   };
   return i < j ? left_of(a, b) : !left_of(b, a);
-}
-
-// Rounds away from `from` so that a float never hides what it bounds.
-float above(double z) {
-  return std::nextafter(static_cast<float>(z), HUGE_VALF);
-}
-float below(double z) {
-  return std::nextafter(static_cast<float>(z), -HUGE_VALF);
 }
 
 }  // namespace
@@ -43,11 +37,12 @@ InsideIndex::InsideIndex(const std::vector<Vec3>& vertices,
   const double margin = 0.01 / per_cell_;
   low_ = box.low - Vec3{margin, margin, margin};
   middle_z_ = 0.5 * (box.low.z + box.high.z);
+  per_step_ = kSteps / (box.high.z - low_.z);
   for (std::size_t k = 0; k < 3; ++k) {
     const double cells = coordinate(box.high - low_, static_cast<int>(k)) * per_cell_ + 0.01;
     cells_[k] = static_cast<std::uint32_t>(cells) + 1;
   }
-  state_.assign(cell_of({0, 0, cells_[2]}), Cell::outside);
+  state_.assign(cell_of({0, 0, cells_[2]}) / kCellsPerByte + 1, 0);  // outside
   list_columns(vertices, triangles);
   find_states(vertices, triangles);
 }
@@ -88,7 +83,8 @@ void InsideIndex::list_columns(const std::vector<Vec3>& vertices,
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const auto& [i, j, k] = triangles[t];
     const double a = vertices[i].z, b = vertices[j].z, c = vertices[k].z;
-    const Entry entry{t, below(std::min({a, b, c})), above(std::max({a, b, c}))};
+    const Entry entry{t, static_cast<std::uint16_t>(steps(std::min({a, b, c}) - low_.z)),
+                      static_cast<std::uint16_t>(steps(std::max({a, b, c}) - low_.z) + 1)};
     for_columns(spans[t], [&](std::size_t column) { entries_[next[column]++] = entry; });
   }
 }
@@ -99,11 +95,11 @@ void InsideIndex::find_states(const std::vector<Vec3>& vertices,
   for (std::uint32_t z = 0; z < cells_[2]; ++z)
     for (std::uint32_t y = 0; y < cells_[1]; ++y)
       for (std::uint32_t x = 0; x < cells_[0]; ++x) {
-        Cell& state = state_[cell_of({x, y, z})];
-        if (state == Cell::cut) continue;
+        const std::size_t cell = cell_of({x, y, z});
+        if (state(cell) == Cell::cut) continue;
         const Vec3 center = low_ + (1 / per_cell_) * Vec3{x + 0.5, y + 0.5, z + 0.5};
         const bool in = holds_by_column(center, column_of({x, y, 0}), vertices, triangles);
-        state = in ? Cell::inside : Cell::outside;
+        set_state(cell, in ? Cell::inside : Cell::outside);
       }
 }
 
@@ -117,7 +113,7 @@ void InsideIndex::mark_cut_cells(const std::array<Vec3, 3>& corners, const Span&
     for (std::uint32_t y = span.low[1]; y <= span.high[1]; ++y)
       for (std::uint32_t x = span.low[0]; x <= span.high[0]; ++x)
         if (std::abs(dot(normal, Vec3{x + 0.5, y + 0.5, z + 0.5} - on)) <= reach)
-          state_[cell_of({x, y, z})] = Cell::cut;
+          set_state(cell_of({x, y, z}), Cell::cut);
 }
 
 bool InsideIndex::holds(Vec3 x, const std::vector<Vec3>& vertices,
@@ -128,8 +124,8 @@ bool InsideIndex::holds(Vec3 x, const std::vector<Vec3>& vertices,
     return false;
   const Place place{static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y),
                     static_cast<std::uint32_t>(at.z)};
-  const Cell state = state_[cell_of(place)];
-  if (state != Cell::cut) return state == Cell::inside;
+  const Cell found = state(cell_of(place));
+  if (found != Cell::cut) return found == Cell::inside;
   return holds_by_column(x, column_of(place), vertices, triangles);
 }
 
@@ -137,10 +133,11 @@ bool InsideIndex::holds(Vec3 x, const std::vector<Vec3>& vertices,
 bool InsideIndex::holds_by_column(Vec3 x, std::size_t column, const std::vector<Vec3>& vertices,
                                   const std::vector<Triangle>& triangles) const {
   const bool upward = x.z > middle_z_;
+  const double at = steps(x.z - low_.z);
   int winding = 0;
   for (std::uint32_t e = begin_[column]; e < begin_[column + 1]; ++e) {
     const Entry& entry = entries_[e];
-    if (upward ? entry.high < x.z : entry.low > x.z) continue;
+    if (upward ? entry.high < at : entry.low > at) continue;
     const auto& [i, j, k] = triangles[entry.triangle];
     const Vec3 &a = vertices[i], &b = vertices[j], &c = vertices[k];
     const bool left = is_left(i, a, j, b, x);

@@ -24,10 +24,11 @@ class InsideIndex {
 
  private:
   enum class Cell : std::uint8_t { outside, inside, cut };
-  // A triangle over a column, with its lowest and highest z.
+  static constexpr std::size_t kCellsPerByte = 4;
+  // A triangle over a column, with its lowest and highest z in steps from the lowest place.
   struct Entry {
     std::uint32_t triangle;
-    float low, high;
+    std::uint16_t low, high;
   };
   using Place = std::array<std::uint32_t, 3>;
   // Cells of a triangle's box, the last included.
@@ -39,8 +40,18 @@ class InsideIndex {
   std::size_t cell_of(const Place& p) const {
     return column_of(p) + std::size_t{cells_[0]} * cells_[1] * p[2];
   }
+  Cell state(std::size_t cell) const {
+    return static_cast<Cell>(state_[cell / kCellsPerByte] >> shift(cell) & 3);
+  }
+  void set_state(std::size_t cell, Cell state) {
+    std::uint8_t& byte = state_[cell / kCellsPerByte];
+    byte = static_cast<std::uint8_t>((byte & ~(3 << shift(cell))) | static_cast<int>(state)
+                                                                        << shift(cell));
+  }
+  static int shift(std::size_t cell) { return static_cast<int>(2 * (cell % kCellsPerByte)); }
   bool holds_by_column(Vec3 x, std::size_t column, const std::vector<Vec3>& vertices,
                        const std::vector<Triangle>& triangles) const;
+  double steps(double height) const { return per_step_ * height; }  // above the lowest place
   Span span_of(const std::array<Vec3, 3>& corners) const;
   void list_columns(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
   void find_states(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
@@ -50,7 +61,8 @@ class InsideIndex {
   double per_cell_ = 0;  // cells per metre
   double middle_z_ = 0;
   Place cells_{};
-  std::vector<Cell> state_;
+  double per_step_ = 0;               // steps of entries per metre
+  std::vector<std::uint8_t> state_;   // two bits for each cell
   std::vector<std::uint32_t> begin_;  // of the columns' entries, and the end of the last
   std::vector<Entry> entries_;
 };

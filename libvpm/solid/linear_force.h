@@ -24,4 +24,14 @@ inline ForceAndTorque linear_force(const ForceMoments& m, const Depth& depth, Ve
   return {-force, -Vec3{y_n.z - z_n.y, z_n.x - x_n.z, x_n.y - y_n.x}};
 }
 
+// Returns the same of a triangle.
+inline ForceAndTorque linear_force(const std::array<Vec3, 3>& corners, const Depth& depth, Vec3 x) {
+  const auto& [a, b, c] = corners;
+  const auto at = [&](Vec3 corner) { return depth.value + dot(depth.gradient, corner - x); };
+  const double p = at(a), q = at(b), r = at(c), sum = p + q + r;
+  const Vec3 area = 0.5 * cross(b - a, c - a);
+  const Vec3 moment = (p * a + q * b + r * c + sum * (a + b + c)) / 12;  // ∫ d x dA / |area|
+  return {-sum / 3 * area, -cross(moment, area)};
+}
+
 }  // namespace vpm

@@ -63,7 +63,7 @@ SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
   hash_ = content_hash(surface);
   tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_, with_depth);
   inside_ = std::make_unique<InsideIndex>(tree_->vertices(), tree_->triangles());
-  volume_ = tree_->moments()[0].flux() / 3;
+  volume_ = tree_->moments(0).flux() / 3;
   if (with_depth) prepare_depth();
 }
 

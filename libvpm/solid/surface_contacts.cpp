@@ -259,7 +259,7 @@ void SurfacePair::add_pieces(std::uint32_t largest) {
       const auto [a, b, c] = tree.corners(child & ~kLeaf);
       moments = triangle_moments(a, b, c);
     } else {
-      moments = tree.moments()[child];
+      moments = tree.moments(child);
     }
     contact_sums_[contact][role].whole.add(scaled(moments, per_unit_));
   }

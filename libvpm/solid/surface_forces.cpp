@@ -38,6 +38,20 @@ double square(double v) {
   return v * v;
 }
 
+// Returns the force on what is below a node, where the depth is linear: `depth` at the place x.
+ForceAndTorque linear_force_of(const SurfaceTree& tree, std::uint32_t node, const Depth& depth,
+                               Vec3 x) {
+  if (const ForceMoments* moments = tree.force_moments(node))
+    return linear_force(*moments, depth, x);
+  const SurfaceTree::Summary& below = tree.summaries()[node];
+  ForceAndTorque sum;
+  for (std::uint32_t t = below.first; t < below.end; ++t) {
+    const ForceAndTorque f = linear_force(tree.corners(t), depth, x);
+    sum.force += f.force, sum.torque += f.torque;
+  }
+  return sum;
+}
+
 }  // namespace
 
 // Chooses by the mean depth: that of what is shared, of which the volume is the
@@ -69,9 +83,9 @@ double SurfacePair::depth_of_largest() {
     const Role& role = roles_[piece.role];
     const bool is_triangle = (piece.child & kLeaf) != 0;
     const auto [a, b, c] = role.tree->corners(is_triangle ? piece.child & ~kLeaf : 0);
-    const double area =
-        is_triangle ? 0.5 * norm(cross(b - a, c - a)) : role.tree->patches()[piece.child].area;
-    const Vec3 middle = is_triangle ? (a + b + c) / 3 : role.tree->patches()[piece.child].middle;
+    const SurfaceTree::Patch& patch = role.tree->patches()[is_triangle ? 0 : piece.child];
+    const double area = is_triangle ? 0.5 * norm(cross(b - a, c - a)) : double{patch.area};
+    const Vec3 middle = is_triangle ? (a + b + c) / 3 : widen(patch.middle);
     probes_.push_back(
         {per_unit_ * per_unit_ * area, per_unit_ * (role.to_first * middle), piece.role});
   }
@@ -134,37 +148,38 @@ bool SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Fore
   const SurfaceTree::Patch& patch = role.tree->patches()[node];
   const double most = kPatchRadius * role.solid->reach();
   if (patch.radius > (precision_.size < 1 ? kForetelling * most : most)) return false;
-  Depth depth = roles_[1 - which].solid->depth(role.to_other * patch.middle);
+  const Vec3 middle = widen(patch.middle);
+  Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
   depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
-  const double error = per_unit_ * std::abs(foretold.at(patch.middle) - depth.value);
+  const double error = per_unit_ * std::abs(foretold.at(middle) - depth.value);
   const bool is_as_foretold =
       patch.radius <= precision_.size * most ||
       (foretold.is_known && is_precise(error, per_unit_ * per_unit_ * patch.area));
-  foretold = {depth, patch.middle, true};
+  foretold = {depth, middle, true};
   if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !is_as_foretold)
     return false;
   const double unit3 = per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
-  const ForceAndTorque f = linear_force(patch.moments, depth, patch.middle);
+  const ForceAndTorque f = linear_force_of(*role.tree, node, depth, middle);
   const ForceAndTorque added{unit3 * f.force, unit4 * f.torque};
   role.sums.whole_wrench.add(added.force, added.torque);
   const SurfaceTree::Summary& below = role.tree->summaries()[node];
   if (with_contacts_)
-    note_force_of_whole(which, added, depth, patch.middle, patch.radius, below.first, below.end);
+    note_force_of_whole(which, added, depth, middle, patch.radius, below.first, below.end);
   return true;
 }
 
 void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangle,
                                         const Foretold& before) {
   Role& role = roles_[which];
-  const auto [a, b, c] = role.tree->corners(triangle);
+  const std::array<Vec3, 3> corners = role.tree->corners(triangle);
   const double most = kCell * role.solid->reach(), longest = role.tree->longest_edge(triangle);
   const PlacedTriangle at = placed(role, triangle);
   DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
   for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
   const Vec3 normal = normalized_or_zero(at.normal);
   if (longest > most) return add_force_of_cells(which, cell, normal);
-  const Vec3 middle = (a + b + c) / 3;
+  const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
   const Vec3 gradient = depth.gradient;
@@ -173,7 +188,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
   if (longest > precision_.size * most && !(before.is_known && is_precise(error, area)))
     return add_force_of_cells(which, cell, normal);
-  const ForceAndTorque f = linear_force(triangle_force_moments(a, b, c), depth, middle);
+  const ForceAndTorque f = linear_force(corners, depth, middle);
   const double unit3 = per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
   role.sums.whole_wrench.add(added.force, added.torque);

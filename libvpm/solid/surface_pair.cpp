@@ -252,8 +252,8 @@ void SurfacePair::add_whole(std::size_t which) {
         pending_.push_back(child);
         continue;
       }
-      if (!is_inside(which, summary.vertex)) continue;
-      role.sums.whole.add(scaled(tree.moments()[child], per_unit_));
+      if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
+      role.sums.whole.add(scaled(tree.moments(child), per_unit_));
       if (with_force_) role.sums.area.add(per_unit_ * per_unit_ * tree.patches()[child].area);
       note_whole(which, child);
     }

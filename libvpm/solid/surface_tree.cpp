@@ -12,6 +12,10 @@ namespace {
 
 // Padding of float bounds, relative to the reach: several float roundings of either solid.
 constexpr double kPadding = 2e-6;
+// Makes of a length a bound of it, as a float.
+constexpr double kMore = 1.00001;
+// Nodes of so many triangles or fewer keep no moments: these are most of all nodes.
+constexpr std::uint32_t kSummedWhenAsked = 8;
 
 }  // namespace
 
@@ -42,7 +46,7 @@ class SurfaceTree::Build {
       const auto [a, b, c] = tree_.corners(t);
       const double longest2 =
           std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
-      tree_.longest_edge_.push_back(static_cast<float>(1.00001 * std::sqrt(longest2)));
+      tree_.longest_edge_.push_back(static_cast<float>(kMore * std::sqrt(longest2)));
     }
     tree_.nodes_[0].child = {all.size() > 1 ? 1 : kLeaf, kNone, kNone, kNone};
     for (std::uint32_t k = 0; k < tree_.nodes_.size(); ++k) set_bounds(k);
@@ -226,21 +230,29 @@ class SurfaceTree::Build {
     }
   }
 
-  // Sums the moments bottom-up: children have larger indices than their parents.
+  // Sums the moments of nodes of many triangles, bottom-up: children have larger indices than their
+  // parents.
   void sum_up() {
-    tree_.summaries_.resize(tree_.nodes_.size());
-    tree_.moments_.resize(tree_.nodes_.size());
+    for (const Range& range : ranges_) {
+      const bool is_summed = range.size() > kSummedWhenAsked || tree_.summaries_.empty();
+      const auto sums = is_summed ? static_cast<std::uint32_t>(tree_.sums_.size()) : kNone;
+      tree_.summaries_.push_back({range.begin, range.end, sums, false});
+      if (is_summed) tree_.sums_.emplace_back();
+    }
     for (std::size_t k = tree_.nodes_.size(); k-- > 0;) {
-      const Range range = ranges_[k];
-      tree_.summaries_[k] = {range.begin, range.end, tree_.triangles_[range.begin][0], false};
-      SurfaceMoments& moments = tree_.moments_[k];
+      if (tree_.summaries_[k].sums == kNone) continue;
+      ForceMoments& moments = tree_.sums_[tree_.summaries_[k].sums];
       for (const std::uint32_t child : tree_.nodes_[k].child) {
         if (child == kNone) continue;
-        if ((child & kLeaf) != 0) {
-          const auto [a, b, c] = tree_.corners(child & ~kLeaf);
-          moments.add(triangle_moments(a, b, c));
-        } else {
-          moments.add(tree_.moments_[child]);
+        if (const ForceMoments* of_child =
+                (child & kLeaf) != 0 ? nullptr : tree_.force_moments(child)) {
+          moments.add(*of_child);
+          continue;
+        }
+        const Range range = range_of(child);
+        for (std::uint32_t t = range.begin; t < range.end; ++t) {
+          const auto [a, b, c] = tree_.corners(t);
+          moments.add(triangle_force_moments(a, b, c));
         }
       }
     }
@@ -280,22 +292,14 @@ class SurfaceTree::Build {
         const double twice = norm(cross(b - a, c - a));
         area += twice, sum += twice / 3 * (a + b + c);
       }
-      patch.area = 0.5 * area;
-      patch.middle = area > 0 ? sum / area : tree_.corners(ranges_[k].begin)[0];
+      patch.area = static_cast<float>(0.5 * area);
+      patch.middle = narrow(area > 0 ? sum / area : tree_.corners(ranges_[k].begin)[0]);
+      const Vec3 middle = widen(patch.middle);
       double radius2 = 0;
       for_vertices(ranges_[k],
-                   [&](Vec3 v) { radius2 = std::max(radius2, squared_norm(v - patch.middle)); });
-      patch.radius = std::sqrt(radius2);
-      patch.thickness = slab_of(ranges_[k]).half_width();
-      for (const std::uint32_t child : tree_.nodes_[k].child) {
-        if (child == kNone) continue;
-        if ((child & kLeaf) != 0) {
-          const auto [a, b, c] = tree_.corners(child & ~kLeaf);
-          patch.moments.add(triangle_force_moments(a, b, c));
-        } else {
-          patch.moments.add(tree_.patches_[child].moments);
-        }
-      }
+                   [&](Vec3 v) { radius2 = std::max(radius2, squared_norm(v - middle)); });
+      patch.radius = static_cast<float>(kMore * std::sqrt(radius2));
+      patch.thickness = static_cast<float>(slab_of(ranges_[k]).half_width());
     }
   }
 
@@ -313,6 +317,17 @@ SurfaceTree::SurfaceTree(std::vector<Vec3> vertices, std::vector<Triangle> trian
   Build(*this, reach).run(with_patches);
 }
 
+SurfaceMoments SurfaceTree::moments(std::uint32_t node) const {
+  const Summary& below = summaries_[node];
+  if (below.sums != kNone) return sums_[below.sums].surface;
+  SurfaceMoments moments;
+  for (std::uint32_t t = below.first; t < below.end; ++t) {
+    const auto [a, b, c] = corners(t);
+    moments.add(triangle_moments(a, b, c));
+  }
+  return moments;
+}
+
 SurfaceBounds SurfaceTree::bounds(std::uint32_t node, std::uint32_t child) const {
   const Node& n = nodes_[node];
   const int l = static_cast<int>(child);
@@ -327,7 +342,7 @@ SurfaceBounds SurfaceTree::bounds(std::uint32_t node, std::uint32_t child) const
 std::size_t SurfaceTree::bytes() const {
   const auto held = [](const auto& list) { return list.size() * sizeof(list[0]); };
   return held(vertices_) + held(triangles_) + held(parent_of_) + held(longest_edge_) +
-         held(nodes_) + held(above_) + held(summaries_) + held(moments_) + held(patches_);
+         held(nodes_) + held(above_) + held(summaries_) + held(sums_) + held(patches_);
 }
 
 }  // namespace vpm

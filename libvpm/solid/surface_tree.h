@@ -38,16 +38,15 @@ class SurfaceTree {
   struct Summary {
     std::uint32_t first;  // triangle; all below are those from here on, before `end`
     std::uint32_t end;
-    std::uint32_t vertex;  // of one of them
+    std::uint32_t sums;  // place of their moments; kNone where few triangles are summed when asked
     bool is_connected;  // all hang together by vertices: where none is crossed, all are on one side
   };
-  // How well a plane stands for what is below a node, for forces; with the second moments.
+  // How well a plane stands for what is below a node, for forces.
   struct Patch {
-    Vec3 middle;       // mean of the surface
-    double radius;     // of its vertices about the middle
-    double thickness;  // half of its slab's
-    double area;       // of the surface
-    ForceMoments moments;
+    Vec3f middle;     // mean of the surface
+    float radius;     // of its vertices about the middle, or more
+    float thickness;  // half of its slab's
+    float area;       // of the surface
   };
 
   // Orders the triangles by the tree and drops none. Needs at least one triangle. `reach` is the
@@ -58,9 +57,15 @@ class SurfaceTree {
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }  // in the tree's order
   const std::vector<Node>& nodes() const { return nodes_; }
-  const std::vector<Summary>& summaries() const { return summaries_; }     // of the nodes
-  const std::vector<SurfaceMoments>& moments() const { return moments_; }  // of the nodes
+  const std::vector<Summary>& summaries() const { return summaries_; }  // of the nodes
   const std::vector<Patch>& patches() const { return patches_; }  // of the nodes; empty without
+  // Returns the moments of what is below a node.
+  SurfaceMoments moments(std::uint32_t node) const;
+  // Returns those with second moments, or null for a node of few triangles.
+  const ForceMoments* force_moments(std::uint32_t node) const {
+    const std::uint32_t sums = summaries_[node].sums;
+    return sums == kNone ? nullptr : &sums_[sums];
+  }
   // Returns the node of which the triangle is a child.
   std::uint32_t parent_of(std::uint32_t triangle) const { return parent_of_[triangle]; }
   // Returns the node of which the node is a child; 0 for node 0.
@@ -73,8 +78,8 @@ class SurfaceTree {
   }
   // Returns the bounds of a child of a node.
   SurfaceBounds bounds(std::uint32_t node, std::uint32_t child) const;
-  // Returns the closest surface point nearer than `within`; triangle is SurfacePoint::kNone if there
-  // is none. Exact in double; of equally near triangles the choice is arbitrary but fixed.
+  // Returns the closest surface point nearer than `within`; triangle is SurfacePoint::kNone if
+  // there is none. Exact in double; of equally near triangles the choice is arbitrary but fixed.
   SurfacePoint closest(Vec3 x, double within = std::numeric_limits<double>::infinity()) const;
   // Returns the bytes held.
   std::size_t bytes() const;
@@ -88,7 +93,7 @@ class SurfaceTree {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> above_;
   std::vector<Summary> summaries_;
-  std::vector<SurfaceMoments> moments_;
+  std::vector<ForceMoments> sums_;
   std::vector<Patch> patches_;
 };
 
