@@ -58,74 +58,71 @@ class DepthCells {
     segments_.assign(cell.segments.begin(), cell.segments.end());
     points_.assign(cell.points.begin(), cell.points.end());
     normal_ = normal;
-    cut(Part{cell.corner, cell.is_inside, 0, 0}, std::optional<typename Visitor::Value>(), visitor);
+    cut(Part{cell.corner, cell.is_inside, 0, 0, segments_.size(), points_.size()},
+        std::optional<typename Visitor::Value>(), visitor);
   }
 
  private:
-  // Cell whose segments and points are the last of the lists, from here on.
+  // Cell with its segments and points in the lists, from the first to before the end.
   struct Part {
     std::array<Vec3, 3> corner;
     std::array<int, 3> is_inside;
-    std::size_t first_segment, first_point;
+    std::size_t first_segment, first_point, end_segment, end_point;
   };
 
+  // Valid until something is appended to the lists.
   DepthCell cell_of(const Part& part) const {
-    return {part.corner, part.is_inside, std::span(segments_).subspan(part.first_segment),
-            std::span(points_).subspan(part.first_point)};
+    const auto of = [](const auto& list, std::size_t first, std::size_t end) {
+      return std::span(list).subspan(first, end - first);
+    };
+    return {part.corner, part.is_inside, of(segments_, part.first_segment, part.end_segment),
+            of(points_, part.first_point, part.end_point)};
   }
   static bool is_outside(const DepthCell& cell) {
     return cell.is_whole() && cell.is_inside[0] == 0;
-  }
-
-  // Calls take(half, number) for both halves of a part, whose cuts are the last of the lists.
-  template <class Take>
-  void for_halves(const Part& part, const Take& take) {
-    const std::size_t segments = segments_.size(), points = points_.size();
-    const std::size_t edge = longest_edge(part);
-    const Vec3 middle = 0.5 * (part.corner[edge] + part.corner[(edge + 1) % 3]);
-    const int is_inside = inside_at(middle, edge, part, points);
-    for (std::size_t k = 0; k < 2; ++k) {
-      take(half(part, edge, middle, is_inside, k == 0, segments, points), k);
-      segments_.resize(segments);
-      points_.resize(points);
-    }
   }
 
   template <class Value, class Visitor>
   void cut(const Part& part, std::optional<Value> value, Visitor& visitor) {
     const DepthCell cell = cell_of(part);
     if (is_outside(cell)) return;
-    std::array<std::optional<Value>, 2> halves;
-    if (!visitor.is_too_large(cell)) {
+    const bool is_too_large = visitor.is_too_large(cell);
+    if (!is_too_large) {
       if (visitor.takes(cell)) return;
       if (!value) value = visitor.value(cell);
       if (visitor.is_negligible(*value)) return visitor.take(cell, *value);
-      std::array<bool, 2> are_outside{};
-      for_halves(part,
-                 [&](const Part& of, std::size_t k) { are_outside[k] = is_outside(cell_of(of)); });
-      // What lies in one half alone is what it was.
-      if (are_outside[0] || are_outside[1]) {
-        halves = {value, value};
+    }
+    const std::size_t segments = segments_.size(), points = points_.size();
+    const std::array<Part, 2> half = halves(part);
+    std::array<std::optional<Value>, 2> values;
+    bool is_taken = false;
+    if (!is_too_large) {
+      const std::array<DepthCell, 2> cells{cell_of(half[0]), cell_of(half[1])};
+      if (is_outside(cells[0]) || is_outside(cells[1])) {
+        values = {value, value};  // what lies in one half alone is what it was
       } else {
-        for_halves(part,
-                   [&](const Part& of, std::size_t k) { halves[k] = visitor.value(cell_of(of)); });
-        if (visitor.agree(*value, *halves[0], *halves[1]))
-          return visitor.take(cell_of(part), *value);
+        values = {visitor.value(cells[0]), visitor.value(cells[1])};
+        is_taken = visitor.agree(*value, *values[0], *values[1]);
       }
     }
-    for_halves(part, [&](const Part& of, std::size_t k) { cut(of, halves[k], visitor); });
+    if (is_taken)
+      visitor.take(cell_of(part), *value);
+    else
+      for (std::size_t k = 0; k < 2; ++k) cut(half[k], values[k], visitor);
+    segments_.resize(segments);
+    points_.resize(points);
   }
 
+  // Appends what cuts the two halves of a part.
+  std::array<Part, 2> halves(const Part& part);
   static std::size_t longest_edge(const Part& part);
   // Returns a number that is not negative on the first half's side of the cut from the middle of an
   // edge to the corner opposite.
   double side(Vec3 x, Vec3 middle, Vec3 apex) const {
     return dot(cross(apex - middle, x - middle), normal_);
   }
-  int inside_at(Vec3 middle, std::size_t edge, const Part& part, std::size_t points) const;
-  // Appends what cuts a half of the part, whose lists end at `segments` and `points`.
-  Part half(const Part& part, std::size_t edge, Vec3 middle, int is_inside, bool is_first,
-            std::size_t segments, std::size_t points);
+  int inside_at(Vec3 middle, std::size_t edge, const Part& part) const;
+  Part half(const Part& part, std::size_t edge, Vec3 middle, int is_inside, bool is_first);
 
   std::vector<CutSegment> segments_;
   std::vector<CutPoint> points_;

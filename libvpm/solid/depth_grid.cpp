@@ -17,6 +17,7 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
                      const Distance& distance) {
   const Vec3 size = high - low;
   cell_ = std::max({size.x, size.y, size.z}) / cells;
+  per_cell_ = 1 / cell_;
   low_ = low - 0.5 * cell_ * Vec3{1, 1, 1};
   for (std::size_t k = 0; k < 3; ++k)
     count_[k] = static_cast<std::size_t>(coordinate(high - low_, static_cast<int>(k)) / cell_) + 3;
@@ -38,21 +39,22 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
     }
   constexpr double kMost = 65535;
   const auto [least, greatest] = std::ranges::minmax(depths);
-  least_ = least, step_ = (double{greatest} - least) / kMost;
+  least_ = least, step_ = std::max(double{greatest} - least, cell_) / kMost;
   for (const double depth : depths)
     samples_.push_back(static_cast<std::uint16_t>(std::lround((depth - least_) / step_)));
 }
 
 Depth DepthGrid::at(Vec3 x) const {
+  const Vec3 place = per_cell_ * (x - low_);
+  const std::array<double, 3> along_axes{place.x, place.y, place.z};
   std::array<std::size_t, 3> cell{};
   std::array<double, 3> part{};
-  const double per_cell = 1 / cell_;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double along = per_cell * coordinate(x - low_, static_cast<int>(k));
-    const double last = static_cast<double>(count_[k] - 1);
-    const double inside = std::clamp(along, 0.0, last);
-    cell[k] = std::min(static_cast<std::size_t>(inside), count_[k] - 2);
-    part[k] = inside - static_cast<double>(cell[k]);
+    const auto last = static_cast<std::int64_t>(count_[k]) - 1;
+    const double inside = std::clamp(along_axes[k], 0.0, static_cast<double>(last));
+    const std::int64_t at = std::min(static_cast<std::int64_t>(inside), last - 1);
+    cell[k] = static_cast<std::size_t>(at);
+    part[k] = inside - static_cast<double>(at);
   }
   const std::size_t y = count_[0], z = count_[0] * count_[1];
   const std::uint16_t* s = samples_.data() + cell[0] + y * cell[1] + z * cell[2];
@@ -66,7 +68,7 @@ Depth DepthGrid::at(Vec3 x) const {
   const double along_x0 = between(more(0), more(y), ty),
                along_x1 = between(more(z), more(y + z), ty);
   const Vec3 gradient{between(along_x0, along_x1, tz), between(x10 - x00, x11 - x01, tz), y1 - y0};
-  return {least_ + step_ * between(y0, y1, tz), per_cell * step_ * gradient};
+  return {least_ + step_ * between(y0, y1, tz), per_cell_ * step_ * gradient};
 }
 
 }  // namespace vpm

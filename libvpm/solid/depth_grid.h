@@ -31,7 +31,7 @@ class DepthGrid {
 
  private:
   Vec3 low_;
-  double cell_;
+  double cell_, per_cell_;
   std::array<std::size_t, 3> count_{};
   double least_ = 0, step_ = 0;  // depth of sample 0, and between samples that differ by 1
   std::vector<std::uint16_t> samples_;

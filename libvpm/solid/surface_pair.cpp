@@ -34,7 +34,8 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
 SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_contacts) {
   start(pose, with_force, with_contacts);
   const SurfaceTree &first = *roles_[0].tree, &second = *roles_[1].tree;
-  if (children_that_meet(first.nodes()[0], second.bounds(0, 0), FloatPose(pose)) == 0) return sums_;
+  if (PlacedBounds(second.bounds(0, 0), pose).children_that_meet(first.nodes()[0]) == 0)
+    return sums_;
   list_triangles();
   drop_apart();
   for (const CandidatePair& pair : candidates_) meet(pair);
@@ -232,14 +233,12 @@ void SurfacePair::add_crossed(std::size_t which) {
 void SurfacePair::add_whole(std::size_t which) {
   Role& role = roles_[which];
   const SurfaceTree& tree = *role.tree;
-  const SurfaceBounds all = roles_[1 - which].tree->bounds(0, 0);
-  // Maps the other's frame to this one's.
-  const FloatPose pose(roles_[1 - which].to_other);
+  const PlacedBounds all(roles_[1 - which].tree->bounds(0, 0), roles_[1 - which].to_other);
   pending_.assign(1, 0);
   while (!pending_.empty()) {
     const SurfaceTree::Node& node = tree.nodes()[pending_.back()];
     pending_.pop_back();
-    const unsigned meets = children_that_meet(node, all, pose);
+    const unsigned meets = all.children_that_meet(node);
     for (std::size_t k = 0; k < 4; ++k) {
       if ((meets >> k & 1) == 0) continue;
       const std::uint32_t child = node.child[k];

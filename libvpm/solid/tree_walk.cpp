@@ -52,45 +52,41 @@ FloatPose::FloatPose(const Pose& pose) {
   translation = {t.x, t.y, t.z};
 }
 
-unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& other,
-                            const FloatPose& pose) {
-  const auto& r = pose.rotation;
-  const auto& s = pose.size;
-  std::array<float, 3> center{}, half{}, normal{};
+PlacedBounds::PlacedBounds(const SurfaceBounds& piece, const Pose& pose)
+    : pose_(pose), own_half_(piece.half), width_(piece.width) {
+  const auto& r = pose_.rotation;
+  const auto& s = pose_.size;
+  const auto &c = piece.center, &h = piece.half, &n = piece.normal;
   for (std::size_t i = 0; i < 3; ++i) {
-    center[i] = r[3 * i] * other.center[0] + r[3 * i + 1] * other.center[1] +
-                r[3 * i + 2] * other.center[2] + pose.translation[i];
-    half[i] =
-        s[3 * i] * other.half[0] + s[3 * i + 1] * other.half[1] + s[3 * i + 2] * other.half[2];
-    normal[i] = r[3 * i] * other.normal[0] + r[3 * i + 1] * other.normal[1] +
-                r[3 * i + 2] * other.normal[2];
+    const std::size_t k = 3 * i;
+    center_[i] = r[k] * c[0] + r[k + 1] * c[1] + r[k + 2] * c[2] + pose_.translation[i];
+    half_[i] = s[k] * h[0] + s[k + 1] * h[1] + s[k + 2] * h[2];
+    normal_[i] = r[k] * n[0] + r[k + 1] * n[1] + r[k + 2] * n[2];
   }
-  const Float4 d0 = node.center[0] - center[0], d1 = node.center[1] - center[1],
-               d2 = node.center[2] - center[2];
+  offset_ = piece.offset - (n[0] * c[0] + n[1] * c[1] + n[2] * c[2]);
+}
+
+unsigned PlacedBounds::children_that_meet(const SurfaceTree::Node& node) const {
+  const auto& r = pose_.rotation;
+  const auto& s = pose_.size;
+  const auto &n = normal_, &c = center_;
+  const auto &h = node.half, &own = node.normal;
+  const Float4 d0 = node.center[0] - c[0], d1 = node.center[1] - c[1], d2 = node.center[2] - c[2];
   // Boxes along the axes of the node's frame.
-  Int4 meets = (absolute(d0) <= node.half[0] + half[0]) & (absolute(d1) <= node.half[1] + half[1]) &
-               (absolute(d2) <= node.half[2] + half[2]);
+  Int4 meets = (absolute(d0) <= h[0] + half_[0]) & (absolute(d1) <= h[1] + half_[1]) &
+               (absolute(d2) <= h[2] + half_[2]);
   if (mask_of(meets) == 0) return 0;
-  // The other's slab, about its box's centre.
-  const float other_offset =
-      other.offset - (other.normal[0] * other.center[0] + other.normal[1] * other.center[1] +
-                      other.normal[2] * other.center[2]);
-  meets &= absolute(normal[0] * d0 + normal[1] * d1 + normal[2] * d2 - other_offset) <=
-           other.width + std::fabs(normal[0]) * node.half[0] + std::fabs(normal[1]) * node.half[1] +
-               std::fabs(normal[2]) * node.half[2];
-  // The slabs of the children.
+  // The piece's slab, about its box's centre.
+  meets &= absolute(n[0] * d0 + n[1] * d1 + n[2] * d2 - offset_) <=
+           width_ + std::fabs(n[0]) * h[0] + std::fabs(n[1]) * h[1] + std::fabs(n[2]) * h[2];
+  // The slabs of the children, and boxes along the axes of the piece's frame.
   Float4 reach = node.width;
-  for (std::size_t j = 0; j < 3; ++j)
-    reach +=
-        absolute(node.normal[0] * r[j] + node.normal[1] * r[3 + j] + node.normal[2] * r[6 + j]) *
-        other.half[j];
-  meets &= absolute(node.normal[0] * center[0] + node.normal[1] * center[1] +
-                    node.normal[2] * center[2] - node.offset) <= reach;
-  // Boxes along the axes of the other's frame.
-  for (std::size_t j = 0; j < 3; ++j)
-    meets &=
-        absolute(r[j] * d0 + r[3 + j] * d1 + r[6 + j] * d2) <=
-        other.half[j] + s[j] * node.half[0] + s[3 + j] * node.half[1] + s[6 + j] * node.half[2];
+  for (std::size_t j = 0; j < 3; ++j) {
+    reach += absolute(own[0] * r[j] + own[1] * r[3 + j] + own[2] * r[6 + j]) * own_half_[j];
+    meets &= absolute(r[j] * d0 + r[3 + j] * d1 + r[6 + j] * d2) <=
+             own_half_[j] + s[j] * h[0] + s[3 + j] * h[1] + s[6 + j] * h[2];
+  }
+  meets &= absolute(own[0] * c[0] + own[1] * c[1] + own[2] * c[2] - node.offset) <= reach;
   return mask_of(meets);
 }
 

@@ -18,10 +18,22 @@ struct FloatPose {
   std::array<float, 3> translation;
 };
 
-// Returns a mask of the node's children whose bounds meet those of a piece of the other surface.
-// `pose` maps the other's frame to the node's. Never misses one that meets.
-unsigned children_that_meet(const SurfaceTree::Node& node, const SurfaceBounds& other,
-                            const FloatPose& pose);
+// Bounds of a piece of a surface, to be asked by nodes of the other, in whose frame they are
+// placed.
+class PlacedBounds {
+ public:
+  // `pose` maps the piece's frame to the nodes'.
+  PlacedBounds(const SurfaceBounds& piece, const Pose& pose);
+
+  // Returns a mask of the node's children whose bounds meet these. Never misses one that meets.
+  unsigned children_that_meet(const SurfaceTree::Node& node) const;
+
+ private:
+  FloatPose pose_;
+  std::array<float, 3> own_half_;                // of the box, along its own axes
+  std::array<float, 3> center_, half_, normal_;  // in the nodes' frame
+  float offset_, width_;                         // of the slab, from the box's centre
+};
 
 // Names a triangle of each of two surfaces that may cross each other, by its index there.
 struct CandidatePair {
