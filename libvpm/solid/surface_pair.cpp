@@ -6,6 +6,9 @@
 namespace vpm {
 namespace {
 
+// Triangles whose memory is asked for before they are placed.
+constexpr std::size_t kAhead = 6;
+
 // Returns a power of two that is larger than any coordinate where the solids can meet.
 double unit_for(double reach, double other_reach) {
   int exponent = 0;
@@ -108,7 +111,13 @@ void SurfacePair::list_triangles() {
   for (Role& role : roles_) {
     const std::size_t count = role.listed.size();
     if (role.placed.size() < count) role.placed.resize(count), role.filters.resize(count);
+    const SurfaceTree& tree = *role.tree;
     for (std::size_t k = 0; k < count; ++k) {
+      if (k + 2 * kAhead < count)
+        __builtin_prefetch(&tree.triangles()[role.listed[k + 2 * kAhead]]);
+      if (k + kAhead < count)
+        for (const std::uint32_t v : tree.triangles()[role.listed[k + kAhead]])
+          __builtin_prefetch(&tree.vertices()[v]);
       const PlacedTriangle& at = role.placed[k] = placed(role, role.listed[k]);
       role.filters[k] = filter_triangle(at.corner, at.normal, at.longest_edge, per_unit_);
     }
