@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libvpm/core/lanes.h"
+#include "libvpm/core/vec3x4.h"
 #include "libvpm/mesh/predicates.h"
 
 namespace vpm {
@@ -24,16 +26,22 @@ class Crossing {
     bound_ = kFilter * spread * spread * spread;
   }
 
-  Meeting find(TriangleCrossing& found) {
-    measure(a_, b_, above_b_);
-    if (is_on_one_side(above_b_)) return Meeting::apart;
-    measure(b_, a_, above_a_);
-    if (is_on_one_side(above_a_)) return Meeting::apart;
+  [[gnu::always_inline]] Meeting find(TriangleCrossing& found) {
+    const Vec3 origin = b_.corner[0];
+    const Vec3x4 p = corners_from(a_, origin);
+    const Double4 above_b = dot(b_.normal, p);
+    if (is_on_one_side(above_b)) return Meeting::apart;
+    const Double4 above_a = dot(a_.normal, corners_from(b_, a_.corner[0]));
+    if (is_on_one_side(above_a)) return Meeting::apart;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int lane = static_cast<int>(k);
+      above_b_[k] = above_b[lane], above_a_[k] = above_a[lane];
+    }
     for (std::size_t k = 0; k < 3; ++k) side_b_[k] = side(above_b_[k], b_, a_.corner[k]);
     if (side_b_[0] == side_b_[1] && side_b_[1] == side_b_[2]) return meeting(Meeting::apart);
     for (std::size_t k = 0; k < 3; ++k) side_a_[k] = side(above_a_[k], a_, b_.corner[k]);
     if (side_a_[0] == side_a_[1] && side_a_[1] == side_a_[2]) return meeting(Meeting::apart);
-    prepare_edges();
+    find_sides_of_edges(p, corners_from(b_, origin));
     add_crossings(a_, above_b_, side_b_, true, found);
     add_crossings(b_, above_a_, side_a_, false, found);
     if (starts_ == 0 && ends_ == 0) return meeting(Meeting::apart);
@@ -43,15 +51,21 @@ class Crossing {
  private:
   Meeting meeting(Meeting found) const { return has_zero_ ? Meeting::undecided : found; }
 
-  // Measures the corners of a triangle over the plane of another, in six volumes.
-  static void measure(const PlacedTriangle& t, const PlacedTriangle& plane,
-                      std::array<double, 3>& above) {
-    for (std::size_t k = 0; k < 3; ++k) above[k] = dot(plane.normal, t.corner[k] - plane.corner[0]);
+  // Corners about an origin, in three lanes; the fourth repeats the first.
+  [[gnu::always_inline]] static Vec3x4 corners_from(const PlacedTriangle& t, Vec3 origin) {
+    const auto& [a, b, c] = t.corner;
+    return Vec3x4(a, b, c, a) - Vec3x4(origin, origin, origin, origin);
+  }
+  // The corners that follow.
+  [[gnu::always_inline]] static Vec3x4 next_corners(const Vec3x4& v) {
+    const Mask4 next{1, 2, 0, 1};
+    return {__builtin_shuffle(v.x, next), __builtin_shuffle(v.y, next),
+            __builtin_shuffle(v.z, next)};
   }
 
-  bool is_on_one_side(const std::array<double, 3>& above) const {
-    return std::min({above[0], above[1], above[2]}) > bound_ ||
-           std::max({above[0], above[1], above[2]}) < -bound_;
+  // Takes the heights of a triangle's corners over a plane, in six volumes.
+  [[gnu::always_inline]] bool is_on_one_side(const Double4& above) const {
+    return all(above > bound_) || all(above < -bound_);
   }
 
   int sign(double determinant, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
@@ -67,25 +81,26 @@ class Crossing {
     return sign(above, t.corner[0], t.corner[1], t.corner[2], x);
   }
 
-  // Plücker coordinates of the edges, about b's first corner, for the signs of pairs of edges.
-  void prepare_edges() {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
-      const Vec3 p = a_.corner[k] - b_.corner[0], q = a_.corner[next] - b_.corner[0];
-      const Vec3 r = b_.corner[k] - b_.corner[0], s = b_.corner[next] - b_.corner[0];
-      along_a_[k] = q - p, moment_a_[k] = cross(p, q);
-      along_b_[k] = s - r, moment_b_[k] = cross(r, s);
+  // Finds on which side edges of a pass those of b by Plücker coordinates about b's first corner,
+  // from which p and r are the corners of a and b.
+  [[gnu::always_inline]] void find_sides_of_edges(const Vec3x4& p, const Vec3x4& r) {
+    const Vec3x4 q = next_corners(p), s = next_corners(r);
+    const Vec3x4 along_a = q - p, moment_a = cross(p, q), along_b = s - r, moment_b = cross(r, s);
+    for (int i = 0; i < 3; ++i) {
+      const Double4 volume = dot(along_a.of(i), moment_b) + dot(moment_a.of(i), along_b);
+      const unsigned above = mask_of(converted<Int4>(volume > bound_)),
+                     below = mask_of(converted<Int4>(volume < -bound_));
+      for (unsigned j = 0; j < 3; ++j)
+        edges_[static_cast<std::size_t>(i)][j] =
+            static_cast<int>(above >> j & 1) - static_cast<int>(below >> j & 1);
     }
   }
 
   // Returns on which side edge i of a passes edge j of b.
   int edges(std::size_t i, std::size_t j) {
-    int& known = edges_[i][j];
-    if (known == 0) {
-      const double volume = dot(along_a_[i], moment_b_[j]) + dot(along_b_[j], moment_a_[i]);
-      known =
-          sign(volume, a_.corner[i], a_.corner[(i + 1) % 3], b_.corner[j], b_.corner[(j + 1) % 3]);
-    }
+    int& known = edges_[i][j];  // 0 where only the exact sign tells
+    if (known == 0)
+      known = sign(0, a_.corner[i], a_.corner[(i + 1) % 3], b_.corner[j], b_.corner[(j + 1) % 3]);
     return known;
   }
 
@@ -129,7 +144,6 @@ class Crossing {
   double bound_ = 0;
   std::array<double, 3> above_b_{}, above_a_{};  // of the corners over the other's plane
   Signs side_b_{}, side_a_{};
-  std::array<Vec3, 3> along_a_, moment_a_, along_b_, moment_b_;
   std::array<std::array<int, 3>, 3> edges_{};
   int starts_ = 0, ends_ = 0;
   bool has_zero_ = false;
@@ -137,6 +151,7 @@ class Crossing {
 
 }  // namespace
 
+VPM_VECTOR_CLONES
 Meeting cross_triangles(const PlacedTriangle& a, const PlacedTriangle& b,
                         TriangleCrossing& crossing) {
   return Crossing(a, b).find(crossing);
