@@ -9,7 +9,7 @@ namespace vpm {
 namespace {
 
 // Cells along the longest side: columns of a few triangles each, up to half a megabyte of states.
-constexpr double kLeastCells = 16, kMostCells = 128, kCellsPerRootOfTriangles = 0.7;
+constexpr double kLeastCells = 16, kMostCells = 128, kCellsPerRootOfTriangles = 0.6;
 // Widening of triangles, in cells, before they are given to cells.
 constexpr double kMargin = 1e-5;
 // Steps of heights along z, over the whole surface.
