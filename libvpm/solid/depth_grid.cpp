@@ -37,11 +37,15 @@ DepthGrid::DepthGrid(Vec3 low, Vec3 high, int cells, const Inside& inside,
         depths.push_back(static_cast<float>(in ? found : -found));
       }
     }
-  constexpr double kMost = 65535;
+  constexpr double kMost = (1 << 8 * kBytes) - 1;
   const auto [least, greatest] = std::ranges::minmax(depths);
   least_ = least, step_ = std::max(double{greatest} - least, cell_) / kMost;
-  for (const double depth : depths)
-    samples_.push_back(static_cast<std::uint16_t>(std::lround((depth - least_) / step_)));
+  samples_.reserve(kBytes * depths.size());
+  for (const double depth : depths) {
+    const auto sample = static_cast<std::uint32_t>(std::lround((depth - least_) / step_));
+    for (std::size_t byte = 0; byte < kBytes; ++byte)
+      samples_.push_back(static_cast<std::uint8_t>(sample >> 8 * byte));
+  }
 }
 
 Depth DepthGrid::at(Vec3 x) const {
@@ -57,12 +61,14 @@ Depth DepthGrid::at(Vec3 x) const {
     part[k] = inside - static_cast<double>(at);
   }
   const std::size_t y = count_[0], z = count_[0] * count_[1];
-  const std::uint16_t* s = samples_.data() + cell[0] + y * cell[1] + z * cell[2];
+  const std::size_t first = cell[0] + y * cell[1] + z * cell[2];
   const auto between = [](double from, double to, double t) { return from + t * (to - from); };
   const auto [tx, ty, tz] = part;
   // Along x, in whole numbers of steps.
-  const auto more = [s](std::size_t k) { return static_cast<double>(s[k + 1] - s[k]); };
-  const auto along = [&](std::size_t k) { return s[k] + tx * more(k); };
+  const auto more = [&](std::size_t k) {
+    return static_cast<double>(sample(first + k + 1) - sample(first + k));
+  };
+  const auto along = [&](std::size_t k) { return sample(first + k) + tx * more(k); };
   const double x00 = along(0), x10 = along(y), x01 = along(z), x11 = along(y + z);
   const double y0 = between(x00, x10, ty), y1 = between(x01, x11, ty);
   const double along_x0 = between(more(0), more(y), ty),

@@ -1,5 +1,6 @@
 // Depth below a closed surface on a dense grid, between samples linear along each axis. Samples are
-// kept in 16 bits, to a 65 000th of the greatest depth: far finer than what the grid is wrong by.
+// kept in 24 bits, to a 16 millionth of the greatest depth, as floats would be: a small solid deep
+// in a large one is pushed by differences of depths.
 #pragma once
 
 #include <array>
@@ -30,11 +31,17 @@ class DepthGrid {
   std::size_t bytes() const { return samples_.size() * sizeof samples_[0]; }
 
  private:
+  static constexpr std::size_t kBytes = 3;
+  std::int32_t sample(std::size_t k) const {
+    const std::uint8_t* at = samples_.data() + kBytes * k;
+    return at[0] | at[1] << 8 | at[2] << 16;
+  }
+
   Vec3 low_;
   double cell_, per_cell_;
   std::array<std::size_t, 3> count_{};
-  double least_ = 0, step_ = 0;  // depth of sample 0, and between samples that differ by 1
-  std::vector<std::uint16_t> samples_;
+  double least_ = 0, step_ = 0;        // depth of sample 0, and between samples that differ by 1
+  std::vector<std::uint8_t> samples_;  // kBytes each, the lowest first
 };
 
 }  // namespace vpm

@@ -72,7 +72,7 @@ TEST(SolidSurface, TreesOfShrinkingTrianglesStayShallow) {
   expect_closest(tree, 1, 100);
 }
 
-// Deep below a face the depth is that of its plane, but for the sixteen bits of the grid.
+// Deep below a face the depth is that of its plane, also where the grid tells it.
 TEST(SolidSurface, DepthsBelowAFaceAreThoseOfItsPlane) {
   const auto box = test::surface(synthetic::make_box(2, 2, 1), true);
   std::mt19937_64 random(6);
@@ -80,9 +80,9 @@ TEST(SolidSurface, DepthsBelowAFaceAreThoseOfItsPlane) {
   for (int k = 0; k < 500; ++k) {
     const double depth = below(random);
     const Depth found = box->depth({across(random), across(random), .5 - depth});
-    EXPECT_NEAR(found.value, depth, 1e-5);
-    EXPECT_NEAR(found.gradient.z, -1, 1e-3);
-    EXPECT_NEAR(std::hypot(found.gradient.x, found.gradient.y), 0, 1e-3);
+    EXPECT_NEAR(found.value, depth, 1e-6);
+    EXPECT_NEAR(found.gradient.z, -1, 1e-5);
+    EXPECT_NEAR(std::hypot(found.gradient.x, found.gradient.y), 0, 1e-5);
   }
 }
 
