@@ -103,8 +103,7 @@ SphereState SolidSurface::state_of(Vec3 center, double radius) const {
   const double coarse = grid_->at(center).value, sure = radius + kWrongCells * grid_->cell();
   if (coarse > sure) return SphereState::inside;
   if (coarse < -sure) return SphereState::outside;
-  if (tree_->closest(center, radius).triangle != SurfacePoint::kNone)
-    return SphereState::boundary;
+  if (tree_->closest(center, radius).triangle != SurfacePoint::kNone) return SphereState::boundary;
   return holds(center) ? SphereState::inside : SphereState::outside;
 }
 

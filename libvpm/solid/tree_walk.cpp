@@ -161,10 +161,6 @@ struct Placed {
   return pairs_that_meet(a, 0, at, pose) | pairs_that_meet(a, 2, at, pose) << 8;
 }
 
-}  // namespace
-
-namespace {
-
 // Asks for the memory of a node that is needed soon.
 [[gnu::always_inline]] inline void fetch(const SurfaceTree::Node& node) {
   constexpr std::size_t kLine = 64;
