@@ -3,6 +3,8 @@
 
 #include <vpm/query_types.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -31,6 +33,8 @@ struct BodySum {
   std::optional<std::uint32_t> points;     // points in spheres, if counted
   std::optional<UnseenSum> unseen;         // of a body that is a camera's (TellsSight)
   bool knows_all_space = false;            // of a closed solid: what it does not hold is free
+  // Variance of the volume, in squares of the tool's, if it is asked for and known; 0 of a solid.
+  std::optional<ToolSum::Sum> variance;
 
   friend bool operator==(const BodySum&, const BodySum&) = default;
 };
@@ -44,6 +48,9 @@ class SceneSum {
     if (body.points) counts_points_ = true, points_ += *body.points;
     bodies_that_know_ += body.knows_all_space;
     if (body.unseen) see(*body.unseen, body.sum);
+    if (!body.variance) return;
+    variance_.add(body.variance->value);
+    ++bodies_of_variance_;
   }
   // Adds a body of which nothing else is known.
   VPM_HD void add(const ToolSum& s, std::uint32_t boundary, std::uint32_t inside) {
@@ -80,6 +87,18 @@ class SceneSum {
   VPM_HD bool tells_sight() const { return cameras_ == 1 || knows_all_space(); }
   VPM_HD Visibility visibility() const {
     return knows_all_space() ? visibility_of({}, volume_fraction()) : visibility_;
+  }
+
+  // Returns between which volumes, m^3, that in all bodies lies 95 times of 100; nothing if one
+  // does not tell its variance. What errs is a sum of many parts, so its distribution is normal
+  // nearly.
+  std::optional<Interval> volume_interval(double tool_volume) const {
+    constexpr double kDeviations = 1.96;
+    if (bodies_of_variance_ < bodies_) return std::nullopt;
+    const double volume = volume_fraction(), most = bodies_,
+                 half = kDeviations * std::sqrt(variance_.real() / ToolSum::Sum::kOne);
+    return Interval{tool_volume * std::max(volume - half, 0.0),
+                    tool_volume * std::min(volume + half, most)};
   }
 
   // Returns the answer in SI units and world axes.
@@ -129,7 +148,9 @@ class SceneSum {
   VPM_HD bool knows_all_space() const { return bodies_ > 0 && bodies_that_know_ == bodies_; }
 
   Wide terms_[kTerms];  // volume, force, torque
-  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, bodies_that_know_ = 0;
+  Wide variance_;
+  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, bodies_that_know_ = 0,
+                bodies_of_variance_ = 0;
   std::uint32_t points_ = 0;
   bool counts_points_ = false;
   Visibility visibility_;  // of the last camera

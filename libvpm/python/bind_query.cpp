@@ -25,14 +25,15 @@ Measure measure_of(const std::string& text) {
 
 QueryOptions options_of(const std::string& measure, std::uint32_t level, const std::string& device,
                         bool coherent, const std::string& shadows, double stiffness,
-                        std::uint32_t contacts) {
+                        std::uint32_t contacts, bool interval) {
   return {measure_of(measure),
           level,
           device_from_text(device),
           coherent,
           choice<Shadows>(shadows, "shadows", {{"near", Shadows::near}, {"solid", Shadows::solid}}),
           stiffness,
-          contacts};
+          contacts,
+          interval};
 }
 
 std::vector<Tool> tools_of(const py::object& tools) {
@@ -81,6 +82,23 @@ py::array closures_of(const Results& results) {
     *out++ = result.closure.value_or(std::numeric_limits<double>::quiet_NaN());
   return closures;
 }
+// Returns the bounds of the volume; None where nothing is told of them.
+std::optional<std::pair<double, double>> interval_of(const Result& result) {
+  if (!result.volume_interval) return std::nullopt;
+  return std::pair{result.volume_interval->low, result.volume_interval->high};
+}
+// Returns those of all results as a new array of shape (N, 2), with NaN for None.
+py::array intervals_of(const Results& results) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  py::array_t<double> bounds({results.answers.size(), std::size_t{2}});
+  double* out = bounds.mutable_data();
+  for (const Result& result : results.answers) {
+    const auto [low, high] = interval_of(result).value_or(std::pair{kNone, kNone});
+    *out++ = low;
+    *out++ = high;
+  }
+  return bounds;
+}
 // Returns a vector of the wrench of all results as an array of shape (N, 3), which shares their
 // memory.
 py::array column_of(const py::object& owner, const Vec3 Wrench::*member) {
@@ -117,6 +135,10 @@ void bind_results(py::module_& module, const py::object& collides_kind) {
       .def_readonly("volume", &Result::volume, "Volume of the tool inside the scene's solid, m^3.")
       .def_readonly("volume_fraction", &Result::volume_fraction,
                     "That volume over the volume of the tool.")
+      .def_property_readonly(
+          "volume_interval", &interval_of,
+          "(low, high), m^3, between which the true volume lies 95 times of 100, for noise and the "
+          "tool's samples, not for what was not seen; None but for a query with interval=True.")
       .def_property_readonly(
           "seen_free",
           [](const Result& result) { return fraction_of(result, &Visibility::seen_free); },
@@ -172,6 +194,8 @@ void bind_results(py::module_& module, const py::object& collides_kind) {
           "volume_fraction",
           [](const py::object& self) { return column_of(self, &Result::volume_fraction); },
           "Array (N,).")
+      .def_property_readonly("volume_interval", &intervals_of,
+                             "Array (N, 2), m^3, NaN where a Result has None.")
       .def_property_readonly(
           "seen_free",
           [](const Results& results) { return fractions_of(results, &Visibility::seen_free); },
@@ -318,16 +342,16 @@ void bind_single_query(py::module_& module, const py::object& collides_kind) {
   query_class
       .def(py::init([](const py::object& tools, const std::string& measure, std::uint32_t level,
                        const std::string& device, bool coherent, const std::string& shadows,
-                       double stiffness, std::uint32_t contacts) {
+                       double stiffness, std::uint32_t contacts, bool interval) {
              const std::vector<Tool> list = tools_of(tools);
-             const QueryOptions options =
-                 options_of(measure, level, device, coherent, shadows, stiffness, contacts);
+             const QueryOptions options = options_of(measure, level, device, coherent, shadows,
+                                                     stiffness, contacts, interval);
              const py::gil_scoped_release unlocked;
              return std::make_unique<LockedQuery>(list, options, list, options);
            }),
            py::arg("tools"), py::kw_only(), py::arg("measure") = "refined", py::arg("level") = 0,
            py::arg("device") = "cpu", py::arg("coherent") = false, py::arg("shadows") = "near",
-           py::arg("stiffness") = 1.0, py::arg("contacts") = 0,
+           py::arg("stiffness") = 1.0, py::arg("contacts") = 0, py::arg("interval") = false,
            "tools: a vpm.Tool, or a list of them.\nmeasure: \"refined\", or \"paper\", the "
            "algorithm as printed.\nlevel: number of spheres; 0: the finest level.\ndevice: "
            "\"cpu\", \"cuda\", \"cuda:1\", \"cuda:all\" or \"auto\".\ncoherent: the poses are "
@@ -337,7 +361,8 @@ void bind_single_query(py::module_& module, const py::object& collides_kind) {
            "that a surface which cuts the tool supports. solid: all of them.\nstiffness: N/m^3; "
            "with 1 force and torque are in m^3 and "
            "m^4.\ncontacts: how many contacts() lists each by itself, all others in one more; 0: "
-           "none. On the CPU only.\n\nRaises ArgumentError for options out of range or that "
+           "none. On the CPU only.\ninterval: answers tell volume_interval. On the CPU "
+           "only.\n\nRaises ArgumentError for options out of range or that "
            "exclude each other, "
            "UnavailableError if the device is not there.")
       .def(
@@ -412,10 +437,11 @@ void bind_level_query(py::module_& module, const py::object& collides_kind) {
       .def(py::init([](const Tool& tool, const Scene& scene, const Numbers& first_pose,
                        std::optional<double> max_error, std::optional<double> deadline_seconds,
                        bool for_scene, const std::string& measure, const std::string& device,
-                       const std::string& shadows, double stiffness, std::uint32_t contacts) {
+                       const std::string& shadows, double stiffness, std::uint32_t contacts,
+                       bool interval) {
              const Pose pose = pose_of(first_pose);
              const QueryOptions options =
-                 options_of(measure, 0, device, false, shadows, stiffness, contacts);
+                 options_of(measure, 0, device, false, shadows, stiffness, contacts, interval);
              const LevelRequest request{max_error, deadline_seconds, for_scene};
              const py::gil_scoped_release unlocked;
              return std::make_unique<LockedQuery>(std::vector<Tool>{tool}, options, tool, options,
@@ -425,6 +451,7 @@ void bind_level_query(py::module_& module, const py::object& collides_kind) {
            py::arg("max_error") = py::none(), py::arg("deadline_seconds") = py::none(),
            py::arg("for_scene") = false, py::arg("measure") = "refined", py::arg("device") = "cpu",
            py::arg("shadows") = "near", py::arg("stiffness") = 1.0, py::arg("contacts") = 0,
+           py::arg("interval") = false,
            "max_error: fraction of the tool's volume that the calibrated worst error may "
            "be.\ndeadline_seconds: time of each query; wins over the others.\nfor_scene: no "
            "spheres that the scene's points cannot resolve.\n\nRaises RefusedError if the tool has "

@@ -41,6 +41,7 @@ SolidPair& SolidQuery::pair_with(const PlacedSolid& solid, std::size_t k) {
 BodySum SolidQuery::sum_of(const SharedSolid& shared, const Pose& pose) const {
   BodySum body;
   body.knows_all_space = true;
+  body.variance.emplace();
   ToolSum& sum = body.sum;
   sum.volume.add(std::min(shared.volume / tool_.volume, 1.0));
   if (sum.volume.value == 0) return body;

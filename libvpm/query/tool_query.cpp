@@ -82,6 +82,9 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
   if (options.contacts > 0 && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("contacts are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
+  if (options.interval && (options.measure == Measure::paper || options.device.is_cuda()))
+    invalid("intervals are a matter of the refined measure on the CPU",
+            "leave the other measure or device out");
   if (options.shadows == Shadows::solid && options.measure == Measure::paper)
     invalid("solid shadows are a matter of the refined measure", "leave the other measure out");
 }
@@ -378,6 +381,7 @@ Result ToolQuery::finished(const SceneSum& sum, const Pose& pose,
                            std::optional<double> closure) const {
   Result result = sum.result(tool_, pose.rotation, options_.stiffness);
   result.closure = closure;
+  if (options_.interval) result.volume_interval = sum.volume_interval(tool_.volume);
   if (options_.contacts > 0)
     result.wrench =
         wrench_of_contacts(result.wrench, result.volume, options_.stiffness, tool_.radius);

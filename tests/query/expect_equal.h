@@ -17,6 +17,10 @@ inline void expect_equal(const Result& a, const Result& b, double scale = 1) {
   EXPECT_EQ(a.inside, b.inside);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.visibility, b.visibility);
+  ASSERT_EQ(a.volume_interval.has_value(), b.volume_interval.has_value());
+  if (!a.volume_interval) return;
+  EXPECT_EQ(cubed * a.volume_interval->low, b.volume_interval->low);
+  EXPECT_EQ(cubed * a.volume_interval->high, b.volume_interval->high);
 }
 
 }  // namespace vpm::testing

@@ -37,6 +37,7 @@ class SameBits : public ::testing::TestWithParam<Variant> {
                             Vec3 shift = {}) const {
     QueryOptions options;
     options.measure = GetParam().measure;
+    options.interval = options.measure == Measure::refined;
     ToolQuery query(tool, options);
     const AnyBody prepared(cloud);
     std::vector<Result> results(12);
@@ -54,6 +55,8 @@ void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, dou
   for (std::size_t k = 0; k < a.size(); ++k) {
     SCOPED_TRACE(k);
     testing::expect_equal(a[k], b[k], scale);
+    if (a[k].volume_interval && a[k].boundary > 0)
+      EXPECT_GT(a[k].volume_interval->high, a[k].volume_interval->low);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
+#include "tools/bench/intervals.h"
 #include "tools/bench/random_poses.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/silhouettes.h"
@@ -30,6 +31,8 @@ constexpr int kRandomPoses = 10000;
 // Spheres of the tools in random poses: so few that points can be fifty times closer than the
 // smallest sphere is large.
 constexpr std::uint32_t kFew = 20;
+// Poses of which intervals are asked in each scene, and images with noise.
+constexpr int kIntervalPoses = 80, kIntervalImages = 8;
 constexpr double kSpacings[] = {1, 0.2, 0.02};  // in radii of the smallest sphere
 
 const std::vector<std::string> kShapes{"cube", "tetrahedron", "octahedron", "torus",
@@ -50,6 +53,15 @@ class Accuracy {
                         {"window", NormalOptions{}.window}};
   }
 
+  Report run_only_intervals() {
+    report_.suite = "intervals";
+    levels_ = {options_.quick ? 250u : 1000u};
+    steps_ = 1;
+    run_intervals();
+    summarise_bounds();
+    return std::move(report_);
+  }
+
   Report run() {
     if (options_.all) {
       levels_ = {kFew, 1000, 10000};
@@ -62,7 +74,7 @@ class Accuracy {
       usual.insert(usual.end(), more.begin(), more.end());
     }
     const std::vector<SweepCase> all = options_.all ? all_cases() : std::vector<SweepCase>{};
-    steps_ = usual.size() + all.size() + (options_.all ? 20 : 0);
+    steps_ = usual.size() + all.size() + (options_.all ? 21 : 0);
     const std::uint32_t spheres = options_.quick ? 250 : 1000;
     for (const SweepCase& c : usual) {
       sweeps_.run(c, {{spheres}, {CloudKind::camera}, options_.quick ? 15 : 60});
@@ -78,6 +90,7 @@ class Accuracy {
     if (options_.all) {
       run_poses();
       run_edges();
+      if (!is_solid()) run_intervals();
       if (!options_.data.empty()) run_frames();
       check_sweeps();
       summarise_bounds();
@@ -140,6 +153,14 @@ class Accuracy {
       }
     }
     check("leaks among random poses", leaks, 0);
+  }
+
+  void run_intervals() {
+    std::vector<const PackedSolid*> tools;
+    for (const std::string& shape : kShapes) tools.push_back(&tool(shape));
+    add_intervals(tools, options_.quick ? 250 : 1000, options_.quick ? 5 : kIntervalPoses,
+                  options_.quick ? 1 : kIntervalImages, report_);
+    step();
   }
 
   void run_edges() {
@@ -310,6 +331,10 @@ Report run_accuracy(const SuiteOptions& options) {
                 "accuracy asks recorded images with --all only; give it, too");
   if (!options.data.empty()) require_recorded_images(options.data);
   return Accuracy(options).run();
+}
+
+Report run_intervals(const SuiteOptions& options) {
+  return Accuracy(options).run_only_intervals();
 }
 
 }  // namespace vpm::bench

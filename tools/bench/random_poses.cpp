@@ -16,16 +16,6 @@ constexpr double kAside = 0.03;  // m from the optical axis, since scenes change
 constexpr int kPaperEvery = 8;
 constexpr double kFieldOfView = 0.6;  // m at a depth of 1 m, wide enough for every pose
 
-// Returns a place with a bell-shaped distribution around the scene's middle and any rotation.
-Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
-  synthetic::NormalNumbers numbers(seed, k);
-  const Rotation rotation = random_rotation(numbers);
-  const double x = kAside * numbers.next(), y = kAside * numbers.next();
-  const double z = 1 + 0.5 * reach * (numbers.next() - 0.5);
-  return {rotation,
-          {std::clamp(x, -2 * kAside, 2 * kAside), std::clamp(y, -2 * kAside, 2 * kAside), z}};
-}
-
 double counted(const PackedSolid& tool, const Pose& pose, const synthetic::Surface& surface) {
   std::size_t inside = 0;
   for (const Vec3& place : tool.few_places()) inside += surface.distance(pose * place) < 0;
@@ -38,6 +28,15 @@ Rotation random_rotation(synthetic::NormalNumbers& numbers) {
   const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
+}
+
+Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
+  synthetic::NormalNumbers numbers(seed, k);
+  const Rotation rotation = random_rotation(numbers);
+  const double x = kAside * numbers.next(), y = kAside * numbers.next();
+  const double z = 1 + 0.5 * reach * (numbers.next() - 0.5);
+  return {rotation,
+          {std::clamp(x, -2 * kAside, 2 * kAside), std::clamp(y, -2 * kAside, 2 * kAside), z}};
 }
 
 Camera camera_of_spacing(double spacing) {

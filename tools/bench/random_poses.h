@@ -36,6 +36,10 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
                              int poses, std::uint64_t seed, Shadows shadows, const Device& device);
 
+// Returns the k-th of random poses: any rotation, at a place with a bell-shaped distribution around
+// the scenes' middle. `reach` is the tool's, m.
+Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach);
+
 // Returns a uniformly distributed rotation; draws four numbers.
 Rotation random_rotation(synthetic::NormalNumbers& numbers);
 

@@ -25,6 +25,7 @@ constexpr Suite kSuites[] = {
     {"accuracy", run_accuracy, kAll | kData | kSeed | kOccluded, Place::either},
     {"cameras", run_cameras},
     {"extremes", run_extremes, 0, Place::either},
+    {"intervals", run_intervals},
     {"packing", run_packing, kAll | kMeshes},
     {"pairs", run_pairs, kMeshes},
     {"peers", run_peers, kMeshes | kData},

@@ -45,6 +45,10 @@ Report run_suite(const std::string& name, const SuiteOptions& options);
 // Measures errors of volume, force and torque against the truth, for both measures.
 Report run_accuracy(const SuiteOptions& options);
 
+// Measures how often the truth lies in the intervals that queries tell; `accuracy` with `all` does
+// so, too.
+Report run_intervals(const SuiteOptions& options);
+
 // Measures errors of one to four cameras around a scene against the truth, with noise, holes and
 // wrong poses, and times their queries.
 Report run_cameras(const SuiteOptions& options);

@@ -283,6 +283,8 @@ void declare_outputs(CLI::App& app, Arguments& a) {
       ->default_str("16")
       ->check(whole_number_in(1, 1 << 20))
       ->option_text("[N]");
+  app.add_flag("--interval", a.interval,
+               "Each line also tells between which volumes the true one lies, 95 times of 100");
   app.add_flag("--resume", a.resume,
                "Go on after the lines that an interrupted run with the same options left beside "
                "--output");

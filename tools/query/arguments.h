@@ -44,7 +44,7 @@ struct Arguments {
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us, stiffness;
-  bool for_scene = false, coherent = false, raw_points = false, bodies = false;
+  bool for_scene = false, coherent = false, raw_points = false, bodies = false, interval = false;
   std::string coupling;
   bool collides = false, collides_only = false;
   double unseen_limit = kUnseenLimit;

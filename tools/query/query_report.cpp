@@ -64,6 +64,8 @@ nlohmann::ordered_json as_json(Vec3 v) {
 
 void add_measures(nlohmann::ordered_json& line, const Result& r) {
   line["volume"] = r.volume;
+  if (r.volume_interval)
+    line["volume_interval"] = {r.volume_interval->low, r.volume_interval->high};
   line["volume_fraction"] = r.volume_fraction;
   if (r.visibility) {
     line["seen_free"] = r.visibility->seen_free;

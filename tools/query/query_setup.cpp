@@ -39,10 +39,11 @@ std::vector<Tool> read_tools(const Program& program, const std::vector<std::stri
 }
 
 // Returns the CPU for what no device computes (coherent poses, the measure as printed, solids,
-// contacts), unless a device is named.
+// contacts, intervals), unless a device is named.
 Device device_of(const Program& program, const Arguments& a) {
   const bool has_solids_only = !a.solids.empty() && a.clouds.empty();
-  const bool is_on_cpu = a.coherent || a.measure == "paper" || a.contacts > 0 || has_solids_only;
+  const bool is_on_cpu =
+      a.coherent || a.measure == "paper" || a.contacts > 0 || a.interval || has_solids_only;
   return is_on_cpu && program.common().device == "auto" ? Device{} : program.device();
 }
 
@@ -54,6 +55,7 @@ QueryOptions query_options(const Program& program, const Arguments& a) {
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
   options.contacts = static_cast<std::uint32_t>(a.contacts);
+  options.interval = a.interval;
   options.device = device_of(program, a);
   return options;
 }

@@ -203,8 +203,12 @@ class Columns {
                                       {"above", "/above"}})
       columns_.push_back({name, place});
     for (std::size_t k = 0; k < links.size(); ++k)
-      for (const char* const field : {"volume", "pose", "contacts"})
-        add(links[k] + "_" + field, "/links/" + std::to_string(k) + "/" + field);
+      for (const auto& [field, place] : {std::pair{"volume", "volume"},
+                                         {"volume_low", "volume_interval/0"},
+                                         {"volume_high", "volume_interval/1"},
+                                         {"pose", "pose"},
+                                         {"contacts", "contacts"}})
+        add(links[k] + "_" + field, "/links/" + std::to_string(k) + "/" + place);
   }
 
   std::span<const CsvColumn> all() const { return columns_; }

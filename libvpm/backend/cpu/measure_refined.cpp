@@ -21,7 +21,8 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       shared_level_(std::make_shared<const SpatialLevel>(tool, level)),
       level_(*shared_level_),
       cells_(level_),
-      is_coherent_(options.coherent) {
+      is_coherent_(options.coherent),
+      tells_variance_(options.interval) {
   if (options.contacts == 0) return;
   contacts_.emplace(tool, level_);
   cells_.keeps_sums = true;

@@ -16,6 +16,7 @@
 #include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
+#include "libvpm/backend/cpu/volume_variance.h"
 #include "libvpm/backend/cpu/whole_cells.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/measure/body_sum.h"
@@ -78,6 +79,7 @@ class RefinedMeasure {
     result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
     result.inside = add_up(work, inside, region, result.sum);
     if (contacts_) contacts_->run(work);
+    if (tells_variance_) result.variance = variance_of(work);
     if constexpr (TellsSight<Surface>) result.unseen = cells_.unseen;
     if (memory == nullptr) return result;
     if (result.boundary + result.inside > 0)
@@ -108,11 +110,20 @@ class RefinedMeasure {
     while (memories_.size() <= place) memories_.emplace_back(level_.size(), level_.roots().size());
     return &memories_[place];
   }
+  // Returns BodySum::variance. All cells must be classified, and the cut ones listed.
+  template <class Surface>
+  std::optional<ToolSum::Sum> variance_of(const PoseWork<Surface>& work) const {
+    if constexpr (TellsVariance<Surface>) {
+      if (const auto found = volume_variance(work, tool_)) return UnseenSum::rounded(*found);
+    }
+    return std::nullopt;
+  }
   // Returns what a body gives whose cells were all found free.
   template <class Surface>
   BodySum all_free(const PoseWork<Surface>& work, PoseMemory* memory) {
     BodySum result;
     work.states.cut.clear();
+    if (tells_variance_) result.variance = variance_of(work);
     if constexpr (TellsSight<Surface>) result.unseen = work.states.unseen;
     if (memory != nullptr) memory->turn();  // in free space there is nothing to look for
     return result;
@@ -220,7 +231,7 @@ class RefinedMeasure {
   std::shared_ptr<const SpatialLevel> shared_level_;
   const SpatialLevel& level_;
   CellStates cells_;
-  bool is_coherent_;
+  bool is_coherent_, tells_variance_;
   std::optional<ContactFinder> contacts_;  // if they are asked for
   std::deque<PoseMemory> memories_;        // for each body of the scene, if poses are coherent
 };

@@ -36,10 +36,9 @@ class VPM_API Query {
   Query(Query&&) noexcept;
   Query& operator=(Query&&) noexcept;
 
-  // Returns a query of the same tools with the same options for another thread: it shares their
-  // levels, so it is made sooner and takes less memory than a new one. Remembers no pose. Throws
-  // Error(unavailable) as the constructor. With a query for each thread and set_thread_count(1),
-  // N cores answer N times as many poses as one.
+  // Returns a query of the same tools and options for another thread, made sooner and with less
+  // memory, since it shares their levels. Remembers no pose. Throws Error(unavailable) as the
+  // constructor. With one for each thread and set_thread_count(1), N cores answer N times as many.
   Query another() const;
 
   // Returns the answer for the first tool at `pose` (tool to world coordinates). A rotation that is
@@ -49,11 +48,10 @@ class VPM_API Query {
   // points without a camera; Error(unavailable) if the device fails.
   //
   // Solids of the scene are measured by the tool's surface and theirs, whatever the level, on the
-  // CPU; `solids` moves them, as Job::solids does. The first call then prepares the tool's surface
-  // (.2 s for 7000 triangles). Throws Error(refused) for a tool that keeps no surface, and where
-  // the boundary of what it shares with a solid does not close, which is a defect of a mesh;
-  // Error(invalid_argument) for another number of poses than of solids, and for the measure as
-  // printed, which knows no solids.
+  // CPU; `solids` moves them, as Job::solids does. The first call prepares the tool's surface (.2 s
+  // for 7000 triangles). Throws Error(refused) for a tool without surface, and where the boundary
+  // of what it shares with a solid does not close, a defect of a mesh; Error(invalid_argument) for
+  // another number of poses than of solids, and for the measure as printed, which knows none.
   Result run(const Scene& scene, const Pose& pose, std::span<const Pose> solids = {});
 
   // Returns vpm::collides() of the answer at a pose. On the CPU it ends as soon as a part of the
@@ -65,10 +63,9 @@ class VPM_API Query {
 
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
   // thousands of poses of up to 16 tools at once, and on the CPU each thread takes jobs of its own,
-  // with memory like that of another() that is kept for the next jobs. `results` must have the size
-  // of `jobs`, else throws Error(invalid_argument), as for a job without such a tool and for
-  // coherent queries of several tools; otherwise as for one pose. After an error the results are
-  // unspecified.
+  // with memory like that of another() that is kept for the next jobs. Throws
+  // Error(invalid_argument) unless `results` has the size of `jobs`, for a job without such a tool
+  // and for coherent queries of several tools; else as for one pose: then results are unspecified.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Begins to answer poses of the first tool that lie in the memory of the query's device, and
@@ -84,13 +81,12 @@ class VPM_API Query {
   // Valid until the next call. A device's states are fetched here.
   std::span<const SphereState> states() const;
 
-  // Returns what each body gave at the last single pose, in the order of the scene's bodies; the
-  // answer was their sum. Unspecified after jobs.
+  // Returns what each body gave at the last single pose, in the scene's order; the answer was their
+  // sum. Unspecified after jobs.
   std::vector<Result> parts() const;
 
-  // Returns the contacts at the last single pose (vpm/query_types.h), whose number
-  // QueryOptions::contacts limits; they add up to the answer. Empty if that asks for none or the
-  // volume is 0; unspecified after jobs and after collides().
+  // Returns the contacts at the last single pose, as many as QueryOptions::contacts asks for; they
+  // add up to the answer. None for a volume of 0; unspecified after jobs and after collides().
   std::vector<Contact> contacts() const;
 
   // Returns the number of spheres of the level that is used of a tool.

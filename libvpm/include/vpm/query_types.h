@@ -16,28 +16,27 @@ namespace vpm {
 enum class Measure { refined, paper };
 
 // Says what counts of the places that a depth image does not show. near: those at most the tool
-// radius behind what it shows, and further behind those that a surface which cuts the tool
-// supports. solid: all of them. The tool radius is the greatest distance of the tool from its
-// centre of mass.
+// radius (the tool's greatest distance from its centre of mass) behind what it shows, and further
+// behind those that a surface which cuts the tool supports. solid: all of them.
 enum class Shadows { near, solid };
 
 struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the tool
   Device device = {};       // the tool's level is copied there
-  // The poses are those of one motion: a tool that passes wholly behind the surface stays inside
-  // until it comes out. Refined measure on the CPU only.
+  // One motion: a tool that passes wholly behind the surface stays inside until it comes out.
+  // Refined measure on the CPU only.
   bool coherent = false;
   Shadows shadows = Shadows::near;  // solid: refined measure, in depth images
   double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
-  // Contacts of each single pose that Query::contacts() lists each by itself; all others are summed
-  // in one more. 0: none are found, which takes less time. Refined measure on the CPU only. Force
-  // and torque of a result are rounded then, to 2^-46 of its volume times the stiffness (times the
-  // tool radius), so that contacts can add up to them.
+  // Contacts of a single pose that Query::contacts() lists by themselves, all others in one more;
+  // 0: none are found, in less time. Refined measure on the CPU only. So that contacts can add up
+  // to force and torque, these are rounded to 2^-46 of volume x stiffness (x tool radius).
   std::uint32_t contacts = 0;
+  bool interval = false;  // finds Result::volume_interval; refined measure on the CPU only
 };
 
-// Question of a batch: a pose (tool to world coordinates) of one of the query's tools.
+// Question of a batch: a pose (tool to world) of one of the query's tools.
 struct Job {
   Pose pose;
   std::uint32_t tool = 0;  // place in the list of tools
@@ -56,21 +55,19 @@ struct Wrench {
   friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
 };
 
-// A contact: a connected patch of what two bodies a and b share; where a scene is asked, a is the
-// tool and b one body of the scene. Contacts come in order of their volumes, largest first (then of
-// the centroid's x, y and z, then of the body's place); the last one is the sum of all that were
-// not asked for. Volumes add up to that of the whole in any order, in the same bits, and so do
-// forces and torques. What is asked of two solids gives the same contacts in the same bits, and a
-// and b swapped give them with the signs of normal and wrench turned; a scene gives the same bits
-// for any order of its bodies. Along a path volume, centroid and wrench of a contact are continuous
-// as those of the whole are, but where contacts merge or split; its place in the list may change,
-// the nearest centroid is the same contact. The hollows of a contact are part of it.
+// A contact: a connected patch of what two bodies a and b share; in a scene a is the tool and b one
+// body. Contacts come by volume, largest first (then by the centroid's x, y and z, then by the
+// body's place); the last one sums all that were not asked for. Volumes add up to that of the whole
+// in any order, in the same bits, and so do forces and torques. Two solids give the same contacts
+// in the same bits, and swapped with the signs of normal and wrench turned; a scene gives the same
+// bits for any order of its bodies. Along a path volume, centroid and wrench of a contact are
+// continuous as those of the whole are, but where contacts merge or split; its place in the list
+// may change, the nearest centroid is the same contact. Its hollows are part of it.
 //
-// What two solids share hangs together where their meshes say so, exactly. Of a depth image, or of
-// points, the cells of the tool that count hang together where the centres of their samples behind
-// the surface are nearer to each other than an eighth of the tool radius, and not where they are a
-// quarter apart, but for samples larger than a sixteenth, which reach further; a cell is never
-// divided between contacts.
+// What two solids share hangs together where their meshes say so, exactly. Of images and points,
+// the tool's cells that count do where the centres of their samples behind the surface are nearer
+// than an eighth of the tool radius, and not where they are a quarter apart, but for samples larger
+// than a sixteenth, which reach further; a cell is never divided between contacts.
 struct Contact {
   // Place of a contact that sums patches of several bodies.
   static constexpr std::size_t kSeveralBodies = static_cast<std::size_t>(-1);
@@ -88,8 +85,7 @@ struct Contact {
   // chosen by how deep the pieces of surface lie by which forces are summed. 0 without forces.
   // Below the surface of images and points: that of the tool's spheres.
   double depth = 0;
-  // What the contact adds to force and torque of the whole, which it is about the same point as. 0
-  // without forces.
+  // What it adds to force and torque of the whole, about the same point; 0 without forces.
   Wrench wrench;
   std::uint32_t patches = 1;  // that it sums; more than 1 only in the last
 
@@ -107,36 +103,44 @@ struct Visibility {
   friend constexpr bool operator==(const Visibility&, const Visibility&) = default;
 };
 
+// Bounds between which a true value lies 95 times of 100.
+struct Interval {
+  double low = 0, high = 0;
+
+  friend constexpr bool operator==(const Interval&, const Interval&) = default;
+};
+
 struct Result {
   double volume = 0;           // m^3 of the tool inside the scene's solid
   double volume_fraction = 0;  // volume / volume of the tool
   Wrench wrench;
   std::uint32_t boundary = 0;  // spheres that the surface cuts
   std::uint32_t inside = 0;    // spheres behind the surface that count
-  // Distinct points of the scene strictly inside a sphere of the tool; the measure as printed
-  // counts them, the refined one does not.
+  // Distinct points of the scene strictly inside a sphere of the tool, by the measure as printed.
   std::optional<std::uint32_t> points;
-  // Of the scene's solids, if there are any: the largest Overlap::closure (vpm/solid.h), by which
-  // the boundary of what the tool shares with one of them misses to be closed. At most 1e-8.
+  // Of the scene's solids, if any: the largest Overlap::closure (vpm/solid.h), by which the
+  // boundary of what the tool shares with one misses to be closed. At most 1e-8.
   std::optional<double> closure;
-  // What the scene's camera knows, by the refined measure; its part of the volume is that in the
-  // camera's body. Of solids alone the whole tool is seen. Nothing is told of points without a
-  // camera, nor of several cameras, which do not know of each other.
+  // What the scene's camera knows, by the refined measure, with the volume in its own body. Of
+  // solids alone all is seen. Nothing is told of points without a camera, nor of several cameras.
   std::optional<Visibility> visibility;
+  // Of the volume, m^3, if QueryOptions::interval asks: for noise of the measured surface, its
+  // quantisation, what cameras disagree by, and the tool's samples and planes; not for what was not
+  // seen. Nothing is told of points as measured (Denoising::off).
+  std::optional<Interval> volume_interval;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;
 };
 
-// Says if a tool is in a scene's solid. Unknown: nothing of the tool is in it as far as anybody
-// knows, but too much of the tool was not seen.
+// Says if a tool is in a scene's solid. Unknown: no as far as anybody knows, but too little was
+// seen.
 enum class Collides : std::uint8_t { no, yes, unknown };
 
 // Part of the tool that may be unseen or out of view where collides() answers no.
 inline constexpr double kUnseenLimit = 0.02;
 
-// Returns yes if a volume of the tool is in the solid; otherwise unknown, if the part of it that is
-// unseen or out of view (Visibility) is more than `unseen_limit`, or the result does not tell what
-// was seen; otherwise no. Thread-safe.
+// Returns yes if a volume of the tool is in the solid; else unknown, if more of it than
+// `unseen_limit` is unseen or out of view, or nobody tells what was seen; else no. Thread-safe.
 constexpr Collides collides(const Result& result, double unseen_limit = kUnseenLimit) {
   if (result.volume > 0) return Collides::yes;
   if (!result.visibility) return Collides::unknown;

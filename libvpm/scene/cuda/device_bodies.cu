@@ -69,6 +69,7 @@ DevicePointsBody::DevicePointsBody(const PreparedPoints& points) : surface_(poin
   surface_.seconds = memory_.copy(denoised.seconds);
   surface_.winding.disks = memory_.copy(points.dipoles().disks());
   surface_.winding.nodes = memory_.copy(points.dipoles().nodes());
+  surface_.measured = nullptr;
 }
 
 DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {

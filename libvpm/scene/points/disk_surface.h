@@ -63,6 +63,9 @@ struct DiskSurface {
   PointNumbers radii{};
   NormalCones cones{};
   DiskWinding winding{};
+  // Per disk: the point before denoising, which moved it; null for points as measured, and on a
+  // device, where nobody asks.
+  const Vec3f* measured = nullptr;
 
   // Samples the nearest disk, which stands for the surface. Only in an empty cloud nothing is
   // known.

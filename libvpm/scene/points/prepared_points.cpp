@@ -82,7 +82,8 @@ DiskSurface PreparedPoints::surface() const {
           disks_.seconds.data(),
           {disks_.radii.data(), largest_radii_.data()},
           {cones_.data()},
-          dipoles_.winding()};
+          dipoles_.winding(),
+          foot_boxes_.empty() ? nullptr : positions().data()};
 }
 
 }  // namespace vpm

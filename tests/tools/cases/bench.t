@@ -4,7 +4,7 @@ $ CUDA_VISIBLE_DEVICES= vpm-bench scaling 2>&1 | sed 's/scaling: this .*/scaling
 vpm-bench: error: scaling: WHY
 [3]
 $ vpm-bench speed
-2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, cameras, extremes, packing, pairs, peers, replay, scaling, timing, tradeoff
+2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, cameras, extremes, intervals, packing, pairs, peers, replay, scaling, timing, tradeoff
 [2]
 $ vpm-bench timing --noise-seed 3
 2> vpm-bench: error: timing takes no --noise-seed, which is for accuracy; leave it out

@@ -1,0 +1,105 @@
+#include "libvpm/backend/cpu/volume_variance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/backend/cpu/cell_samples.h"
+#include "libvpm/measure/contact_patch.h"
+#include "libvpm/scene/mean_plane.h"
+#include "libvpm/scene/surface_noise.h"
+
+namespace vpm {
+namespace {
+
+// Deviations, measured by `vpm-bench accuracy` where the truth is known (measure/README.md):
+// by how much a cut sample errs, in parts of its volume, since it is no ball;
+constexpr double kOfSample = 0.031;
+// by how much the surface lies off the planes of blocks, of what its mean height over each differs
+// from the plane: by itself in each block, and where all blocks are curved alike;
+constexpr double kOfPlane = 0.8, kOfPlanes = 0.8;
+// and by how much that mean height errs, which is of five places, in parts of how far the surface
+// bends off its tangent plane in a block.
+constexpr double kOfBend = 0.125;
+
+// Sums over the blocks of cut cells, which the surface cuts as a plane nearly.
+template <class Surface>
+class VarianceSum {
+ public:
+  VarianceSum(const PoseWork<Surface>& work, const ToolModel& tool)
+      : work_(work), tool_volume_(tool.volume), noise_(work.surface) {}
+
+  bool tells() const { return noise_.tells(); }
+  void add_cell(std::uint32_t row) {
+    const CellView cell = work_.level.cell(row);
+    for (std::uint32_t b = cell.begin; b < cell.end; ++b) add_block(cell, cell.blocks[b]);
+  }
+  // Returns the variance, in squares of the tool's volume.
+  double variance() const {
+    const double planes = kOfPlanes * off_planes_, bend = kOfBend * bend_;
+    const double of_surface = noise_.variance() + kOfPlane * kOfPlane * squared_off_planes_ +
+                              planes * planes + bend * bend;
+    const double per_volume = 1 / tool_volume_;
+    return of_surface * per_volume * per_volume + kOfSample * kOfSample * squared_weights_;
+  }
+
+ private:
+  void add_block(const CellView& cell, const CellBlock& block) {
+    const Vec3 center = work_.to_surface * widen(block.center);
+    const SurfaceSample at = work_.surface.sample(center);
+    if (!at.known || !(std::fabs(at.distance) < double{block.radius})) return;
+    const double area = area_of(cell, block, {{at.normal, at.foot}, work_.to_surface});
+    if (!(area > 0)) return;
+    noise_.add(at, area);
+    TangentPlane mean;
+    if (!mean_of_five(work_.surface, center, double{block.radius}, 0, SampleTogether{}, mean))
+      return;
+    bend_ += area * dot(at.normal, mean.foot - at.foot);
+    const auto classified = work_.measure_of(cell).classify_block(block);
+    if (classified.found != BlockClass::cut) return;
+    const double off = area * -classified.plane.distance(mean.foot);
+    off_planes_ += off;
+    squared_off_planes_ += off * off;
+  }
+  // Returns the area, m^2, in which a plane cuts a block's samples, and notes these.
+  double area_of(const CellView& cell, const CellBlock& block, const ClipPlane& plane) {
+    double area = 0;  // in parts of the tool's volume, 1/m
+    for (std::uint32_t k = block.begin; k < block.end; ++k) {
+      const CellSample& sample = cell.samples[k];
+      const PieceShape<double> shape = shape_of(sample);
+      const double distance = plane.distance(widen(sample.center)), weight = sample.weight;
+      if (side_of_plane(distance, shape.reach_toward(plane.normal)) != PlaneSide::cut) continue;
+      area += weight * shape.section_of_cut(distance, plane.normal);
+      squared_weights_ += weight * weight;
+    }
+    return tool_volume_ * area;
+  }
+
+  const PoseWork<Surface>& work_;
+  double tool_volume_;  // m^3
+  NoiseSum<Surface> noise_;
+  double off_planes_ = 0, squared_off_planes_ = 0;  // m^3, m^6
+  double bend_ = 0;                                 // m^3
+  double squared_weights_ = 0;                      // of cut samples, in squares of the tool
+};
+
+template <class Surface>
+std::optional<double> variance_of(const PoseWork<Surface>& work, const ToolModel& tool) {
+  VarianceSum<Surface> sum(work, tool);
+  if (!sum.tells()) return std::nullopt;
+  for (const std::uint32_t row : work.states.cut) sum.add_cell(row);
+  return sum.variance();
+}
+
+}  // namespace
+
+std::optional<double> volume_variance(const PoseWork<DepthSurface>& work, const ToolModel& tool) {
+  return variance_of(work, tool);
+}
+std::optional<double> volume_variance(const PoseWork<DiskSurface>& work, const ToolModel& tool) {
+  return variance_of(work, tool);
+}
+std::optional<double> volume_variance(const PoseWork<RigSurface>& work, const ToolModel& tool) {
+  return variance_of(work, tool);
+}
+
+}  // namespace vpm

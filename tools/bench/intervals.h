@@ -1,0 +1,19 @@
+// How often the truth lies in the interval that a query tells.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tools/bench/penetration_case.h"
+#include "tools/bench/report.h"
+
+namespace vpm::bench {
+
+// Asks random poses of the tools, at which the surface cuts them, in six scenes, of an image and of
+// points, clean and with noise: `poses` in each, those with noise of so many `images`. Adds a
+// result of each, the bounds that coverage must keep, and a summary. A truth that no camera can
+// know counts as inside where the interval meets the bounds of what it can be.
+void add_intervals(const std::vector<const PackedSolid*>& tools, std::uint32_t level, int poses,
+                   int images, Report& report);
+
+}  // namespace vpm::bench
