@@ -69,13 +69,17 @@ double NoiseSum<DepthSurface>::per_area(const SurfaceSample& at) {
 void NoiseSum<DepthSurface>::add(const SurfaceSample& at, double area) {
   of_pixels_ += area * per_area(at);
   along_rays_ += area * along_ray(at);
+  nearest_ = std::min(nearest_, at.foot.z);
+  farthest_ = std::max(farthest_, at.foot.z);
 }
 
-// Adds that of a step of quantisation which all pixels round alike.
+// Adds that of a step of quantisation, which all pixels round alike but where the surface passes
+// through several.
 double NoiseSum<DepthSurface>::variance() const {
   const double hidden = pairs_ > 0 ? (equal_ / pairs_ - kHidden) / (1 - kHidden) : 0;
   if (!(hidden > 0 && least_ < HUGE_VAL)) return of_pixels_;
-  const double rounded = hidden * least_ * along_rays_;
+  const double steps = 1 + (farthest_ - nearest_) / least_;
+  const double rounded = hidden * least_ * along_rays_ / steps;
   return of_pixels_ + rounded * rounded / 12;
 }
 

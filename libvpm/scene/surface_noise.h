@@ -35,8 +35,9 @@ class NoiseSum<DepthSurface> {
 
  private:
   const DepthSurface& surface_;
-  double of_pixels_ = 0;          // m^6
-  double along_rays_ = 0;         // m^2: areas, as seen along the rays
+  double of_pixels_ = 0;                      // m^6
+  double along_rays_ = 0;                     // m^2: areas, as seen along the rays
+  double nearest_ = HUGE_VAL, farthest_ = 0;  // m, depths of the places
   double least_ = HUGE_VAL;       // m: least depth by which second differences differ from 0
   double pairs_ = 0, equal_ = 0;  // numbers of second differences, and of those that are 0
 };

@@ -128,7 +128,7 @@ TEST_F(Intervals, HoldTheTruthBehindARoundedWall) {
     coverage.add(query_.run(AnyBody(wall.seen_by(camera_at({}))), pose), truth(wall, pose));
   }
   EXPECT_GE(coverage.inside, 54);
-  EXPECT_LT(coverage.ratio(), 4);
+  EXPECT_LT(coverage.ratio(), 10) << "steps that the surface passes through average more than told";
 }
 
 // Cameras that are not where they are said to be disagree alike over all of the tool, which no mean
