@@ -14,9 +14,6 @@ constexpr std::int32_t kWindow = 3;
 constexpr double kDisks = 4;
 // Sum of the squared weights of a second difference.
 constexpr double kSecondDifference = 6;
-// Part of the second differences that are 0 where quantisation hides the noise: with more noise
-// than half a step they are fewer, and the noise averages the steps.
-constexpr double kHidden = 0.5;
 
 // Calls visit(difference) for second differences of inverse depth, 1/m, along rows and columns
 // about a pixel, of pixels that show one surface.
@@ -46,41 +43,19 @@ double along_ray(const SurfaceSample& at) {
 
 }  // namespace
 
-double NoiseSum<DepthSurface>::per_area(const SurfaceSample& at) {
+double NoiseSum<DepthSurface>::per_area(const SurfaceSample& at) const {
   const auto [is_seen, u, v] = surface_.project(at.foot);
   if (!is_seen) return 0;
-  const double z = at.foot.z, squared = z * z;
   double sum = 0, count = 0;
   for_second_differences(surface_, static_cast<std::int32_t>(u + 0.5),
                          static_cast<std::int32_t>(v + 0.5), [&](double difference) {
                            sum += difference * difference;
                            ++count;
-                           if (difference == 0)
-                             ++equal_;
-                           else
-                             least_ = std::min(least_, std::fabs(difference) * squared);
                          });
-  pairs_ += count;
   if (count == 0) return 0;
+  const double squared = at.foot.z * at.foot.z;
   const double of_depth = squared * squared * (sum / (kSecondDifference * count));  // m^2
   return along_ray(at) * squared * of_depth / (surface_.k.fx * surface_.k.fy);
-}
-
-void NoiseSum<DepthSurface>::add(const SurfaceSample& at, double area) {
-  of_pixels_ += area * per_area(at);
-  along_rays_ += area * along_ray(at);
-  nearest_ = std::min(nearest_, at.foot.z);
-  farthest_ = std::max(farthest_, at.foot.z);
-}
-
-// Adds that of a step of quantisation, which all pixels round alike but where the surface passes
-// through several.
-double NoiseSum<DepthSurface>::variance() const {
-  const double hidden = pairs_ > 0 ? (equal_ / pairs_ - kHidden) / (1 - kHidden) : 0;
-  if (!(hidden > 0 && least_ < HUGE_VAL)) return of_pixels_;
-  const double steps = 1 + (farthest_ - nearest_) / least_;
-  const double rounded = hidden * least_ * along_rays_ / steps;
-  return of_pixels_ + rounded * rounded / 12;
 }
 
 void NoiseSum<DiskSurface>::add(const SurfaceSample& at, double area) {

@@ -27,19 +27,15 @@ class NoiseSum<DepthSurface> {
   explicit NoiseSum(const DepthSurface& surface) : surface_(surface) {}
 
   static constexpr bool tells() { return true; }
-  void add(const SurfaceSample& at, double area);
-  double variance() const;
+  void add(const SurfaceSample& at, double area) { variance_ += area * per_area(at); }
+  double variance() const { return variance_; }
 
-  // Returns what an area about a place adds to the variance by its pixels' noise, per m^2, m^4.
-  double per_area(const SurfaceSample& at);
+  // Returns what an area about a place adds to the variance, per m^2, m^4.
+  double per_area(const SurfaceSample& at) const;
 
  private:
   const DepthSurface& surface_;
-  double of_pixels_ = 0;                      // m^6
-  double along_rays_ = 0;                     // m^2: areas, as seen along the rays
-  double nearest_ = HUGE_VAL, farthest_ = 0;  // m, depths of the places
-  double least_ = HUGE_VAL;       // m: least depth by which second differences differ from 0
-  double pairs_ = 0, equal_ = 0;  // numbers of second differences, and of those that are 0
+  double variance_ = 0;
 };
 
 // Of disks: by how far points were measured from the disks that denoising made of them.

@@ -263,6 +263,8 @@ COMMANDS = [
      f"{TOOL} --poses poses.txt --coherent", WALL),
     (f"{TOOL} --poses poses.txt --contacts --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --contacts", WALL),
+    (f"{TOOL} --poses poses.txt --interval --measure paper", "leave the other measure or device out",
+     f"{TOOL} --poses poses.txt --interval", WALL),
     (f"{TOOL} --poses poses.txt --shadows solid --measure paper", "leave the other measure out",
      f"{TOOL} --poses poses.txt --shadows solid", WALL),
     (f"{TOOL} --poses poses.txt --reuse 0.001", r"is gone: leave it out; a coarser (--level)",

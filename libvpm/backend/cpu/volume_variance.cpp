@@ -20,6 +20,9 @@ constexpr double kOfPlane = 0.8, kOfPlanes = 0.8;
 // and by how much that mean height errs, which is of five places, in parts of how far the surface
 // bends off its tangent plane in a block.
 constexpr double kOfBend = 0.125;
+// Most, in radii of a block, by which that mean height may be off the tangent plane: it is .1 in a
+// ball as small as the block; beyond there is an edge or a step, which has no mean plane.
+constexpr double kMostBend = 0.1;
 
 // Sums over the blocks of cut cells, which the surface cuts as a plane nearly.
 template <class Surface>
@@ -53,7 +56,9 @@ class VarianceSum {
     TangentPlane mean;
     if (!mean_of_five(work_.surface, center, double{block.radius}, 0, SampleTogether{}, mean))
       return;
-    bend_ += area * dot(at.normal, mean.foot - at.foot);
+    const double bend = dot(at.normal, mean.foot - at.foot);
+    if (!(std::fabs(bend) <= kMostBend * double{block.radius})) return;
+    bend_ += area * bend;
     const auto classified = work_.measure_of(cell).classify_block(block);
     if (classified.found != BlockClass::cut) return;
     const double off = area * -classified.plane.distance(mean.foot);

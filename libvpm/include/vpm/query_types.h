@@ -124,9 +124,9 @@ struct Result {
   // What the scene's camera knows, by the refined measure, with the volume in its own body. Of
   // solids alone all is seen. Nothing is told of points without a camera, nor of several cameras.
   std::optional<Visibility> visibility;
-  // Of the volume, m^3, if QueryOptions::interval asks: for noise of the measured surface, its
-  // quantisation, what cameras disagree by, and the tool's samples and planes; not for what was not
-  // seen. Nothing is told of points as measured (Denoising::off).
+  // Of the volume, m^3, if QueryOptions::interval asks: for noise of the measured surface, what
+  // cameras disagree by, and the tool's samples and planes; not for what was not seen, nor for
+  // depths in steps far above the noise. Nothing is told of points as measured (Denoising::off).
   std::optional<Interval> volume_interval;
 
   friend constexpr bool operator==(const Result&, const Result&) = default;
