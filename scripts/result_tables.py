@@ -69,16 +69,6 @@ def bounds(report):
     return text
 
 
-def intervals(report):
-    rows = [r for r in report["results"] if r["group"] == "intervals"]
-    cells = lambda r: [thousands(r["poses"]), f"{100 * r['inside']:.1f}", percent(r["width_mean"]), percent(r["volume_mean"])]
-    poses = sum(r["poses"] for r in rows)
-    mean = lambda name: sum(r["poses"] * r[name] for r in rows) / poses
-    whole = {"poses": poses, **{name: mean(name) for name in ("inside", "width_mean", "volume_mean")}}
-    return table(["scene", "cloud", "image", "poses", "truths inside, %", "mean width", "mean error"],
-                 [[r["scene"], r["cloud"], NOISE[r["noise"]]] + cells(r) for r in rows] + [["all", "", ""] + cells(whole)])
-
-
 def tradeoff(report):
     rows = [r for r in report["results"] if r["varied"] == "spheres"]
     knee = report["settings"]["knee"]
@@ -488,7 +478,6 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
          "tests/results/README.md": {
              "accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
              "bounds solid": (bounds, "accuracy_solid"),
-             "intervals": (intervals, "intervals"), "bounds of intervals": (bounds, "intervals"),
              "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
              "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),

@@ -21,8 +21,9 @@ constexpr double kOfPlane = 0.8, kOfPlanes = 0.8;
 // bends off its tangent plane in a block.
 constexpr double kOfBend = 0.125;
 // Most, in radii of a block, by which that mean height may be off the tangent plane: it is .1 in a
-// ball as small as the block; beyond there is an edge or a step, which has no mean plane.
-constexpr double kMostBend = 0.1;
+// ball as small as the block, and noise adds to it; beyond there is an edge, which has no mean
+// plane.
+constexpr double kMostBend = 0.4;
 
 // Sums over the blocks of cut cells, which the surface cuts as a plane nearly.
 template <class Surface>
