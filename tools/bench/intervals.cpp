@@ -119,6 +119,9 @@ void add_intervals(const std::vector<const PackedSolid*>& tools, std::uint32_t l
   for (const std::string& name : kScenes) {
     const synthetic::Scene scene = synthetic::make_scene(name);
     for (const CloudKind kind : {CloudKind::camera, CloudKind::points}) {
+      // One camera does not see the back of a plate: a count of places bounds the truth too
+      // roughly.
+      if (name == "plate" && kind == CloudKind::camera) continue;
       for (const Noise noise : {Noise::none, Noise::kinect}) {
         const Coverage of = coverage_of(scene, kind, noise, tools, level, poses, images);
         report.results.push_back({{"group", "intervals"},
