@@ -34,7 +34,7 @@ struct BodySum {
   std::optional<UnseenSum> unseen;         // of a body that is a camera's (TellsSight)
   bool knows_all_space = false;            // of a closed solid: what it does not hold is free
   // Variance of the volume, in squares of the tool's, if it is asked for and known; 0 of a solid.
-  std::optional<ToolSum::Sum> variance;
+  std::optional<ToolSum::Sum> variance{};
 
   friend bool operator==(const BodySum&, const BodySum&) = default;
 };

@@ -55,8 +55,9 @@ void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, dou
   for (std::size_t k = 0; k < a.size(); ++k) {
     SCOPED_TRACE(k);
     testing::expect_equal(a[k], b[k], scale);
-    if (a[k].volume_interval && a[k].boundary > 0)
+    if (a[k].volume_interval && a[k].boundary > 0) {
       EXPECT_GT(a[k].volume_interval->high, a[k].volume_interval->low);
+    }
   }
 }
 

@@ -18,7 +18,7 @@
 namespace vpm::bench {
 namespace {
 
-constexpr double kLeastInside = .005;  // of the tool, at the poses in clutter and rooms
+constexpr double kLeastShare = .005;  // of the tool, at the poses in clutter and rooms
 
 // A tool as all peers have it.
 struct DepthTool {
@@ -264,7 +264,7 @@ void run_clutter(const DepthTool& tool, const SuiteOptions& options, const RunCo
     const auto inside = std::ranges::count_if(
         places, [&](Vec3 place) { return surface->distance(pose * place) < 0; });
     const double part = static_cast<double>(inside) / static_cast<double>(places.size());
-    if (!(part > kLeastInside && part < kFullest)) continue;
+    if (!(part > kLeastShare && part < kFullest)) continue;
     const Unseen unseen = unseen_parts(places, pose, *surface, sights);
     if (unseen.free + unseen.inside > kDepthKnown * part || unseen.foot > kDepthKnown * part)
       continue;
@@ -298,7 +298,7 @@ void run_recorded(const DepthTool& tool, const SuiteOptions& options, const RunC
                             image.cloud.sensor->camera);
       };
       const double part = count(tool.packed.few_places()).behind;
-      if (!(part > kLeastInside && part < kShallow)) continue;
+      if (!(part > kLeastShare && part < kShallow)) continue;
       const ProjectiveCount behind = count(tool.packed.places);
       poses.push_back(pose);
       truth.push_back({behind.behind * whole, {.inside = behind.occluded}, false, {}});
