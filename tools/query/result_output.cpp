@@ -22,8 +22,6 @@ constexpr CsvColumn kResult[] = {
     {"time", "/time"},
     {"frame", "/frame"},
     {"volume", "/volume"},
-    {"volume_low", "/volume_interval/0"},
-    {"volume_high", "/volume_interval/1"},
     {"volume_fraction", "/volume_fraction"},
     {"seen_free", "/seen_free"},
     {"unseen", "/unseen"},
@@ -45,6 +43,8 @@ constexpr CsvColumn kResult[] = {
     {"collides", "/collides"},
     {"above", "/above"},
     {"contacts", "/contacts"},
+    {"volume_low", "/volume_interval/0"},
+    {"volume_high", "/volume_interval/1"},
 };
 
 constexpr CsvColumn kCoupling[] = {

@@ -204,10 +204,10 @@ class Columns {
       columns_.push_back({name, place});
     for (std::size_t k = 0; k < links.size(); ++k)
       for (const auto& [field, place] : {std::pair{"volume", "volume"},
-                                         {"volume_low", "volume_interval/0"},
-                                         {"volume_high", "volume_interval/1"},
                                          {"pose", "pose"},
-                                         {"contacts", "contacts"}})
+                                         {"contacts", "contacts"},
+                                         {"volume_low", "volume_interval/0"},
+                                         {"volume_high", "volume_interval/1"}})
         add(links[k] + "_" + field, "/links/" + std::to_string(k) + "/" + place);
   }
 

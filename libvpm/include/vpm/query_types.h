@@ -16,8 +16,9 @@ namespace vpm {
 enum class Measure { refined, paper };
 
 // Says what counts of the places that a depth image does not show. near: those at most the tool
-// radius (the tool's greatest distance from its centre of mass) behind what it shows, and further
-// behind those that a surface which cuts the tool supports. solid: all of them.
+// radius behind what it shows, and further behind those that a surface which cuts the tool
+// supports. solid: all of them. The tool radius is the greatest distance of the tool from its
+// centre of mass.
 enum class Shadows { near, solid };
 
 struct QueryOptions {
@@ -132,8 +133,7 @@ struct Result {
   friend constexpr bool operator==(const Result&, const Result&) = default;
 };
 
-// Says if a tool is in a scene's solid. Unknown: no as far as anybody knows, but too little was
-// seen.
+// Says if a tool is in a scene's solid. Unknown: no as far as is known, but too little was seen.
 enum class Collides : std::uint8_t { no, yes, unknown };
 
 // Part of the tool that may be unseen or out of view where collides() answers no.

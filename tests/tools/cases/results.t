@@ -19,7 +19,7 @@ $ sed -E 's/"id":("([^"\\]|\\.)*"|7),//' ids.jsonl > plain.jsonl && vpm-query --
 
 # A name that ends in .csv gives the same values as CSV, with one column for each number.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses ids.jsonl -o ids.csv && head -n 1 ids.csv && cut -d, -f1-5 ids.csv | tail -n 1
-pose,id,tool,time,frame,volume,volume_low,volume_high,volume_fraction,seen_free,unseen,out_of_view,force_x,force_y,force_z,torque_x,torque_y,torque_z,boundary,inside,points,closure,level,measure,level_reason,bodies,collides,above,contacts
+pose,id,tool,time,frame,volume,volume_fraction,seen_free,unseen,out_of_view,force_x,force_y,force_z,torque_x,torque_y,torque_z,boundary,inside,points,closure,level,measure,level_reason,bodies,collides,above,contacts,volume_low,volume_high
 3,"two, with ""quotes""",,
 $ python3 $SOURCE/tests/tools/csv_same.py ids.out.jsonl ids.csv
 4 True
