@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Makes the pictures of the pages: the tools show the bundled example, headless Chromium photographs it.
 
-usage: scripts/view_pictures.py [BIN [OUTPUT [--coarse]]]     by default build/release/bin and examples/pictures; --coarse: with rough
-edges
+usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and examples/pictures
 """
 import io
 import math
@@ -105,8 +104,7 @@ def main():
         for name, action in PICTURES.items():
             page = browser.open(f"{folder}/{name}.html", 1120, 630)
             page.evaluate(action)
-            if "--coarse" not in sys.argv:
-                page.evaluate("vpm.setQuality(2)")  # smooth edges, which a processor leaves out
+            page.evaluate("vpm.setQuality(2)")  # smooth edges, which a processor leaves out
             save(page.screenshot(), output / f"{name}.png")
             if page.faults:
                 sys.exit(f"view_pictures.py: {name}: {page.faults}")

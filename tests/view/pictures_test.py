@@ -39,7 +39,7 @@ def main():
         print("skipped: needs Chromium and Pillow (Debian: chromium, python3-pil)")
         return 77
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([sys.executable, REPOSITORY / "scripts/view_pictures.py", sys.argv[1], folder, "--coarse"], capture_output=True, text=True)
+        done = subprocess.run([sys.executable, REPOSITORY / "scripts/view_pictures.py", sys.argv[1], folder], capture_output=True, text=True)
         if done.returncode != 0:
             print(done.stderr)
             return 77 if "draws no pages" in done.stderr else 1
