@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <optional>
 
@@ -18,6 +17,7 @@
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/peak_memory.h"
 #include "tools/bench/smooth_solids.h"
+#include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
 
 namespace vpm::bench {
@@ -41,11 +41,10 @@ Cost operator+(const Cost& a, const Cost& b) {
 Cost cost_of(const std::function<void()>& work) {
   reset_peak_memory();
   const auto start = std::chrono::steady_clock::now();
-  const std::clock_t cpu = std::clock();
+  const double cpu = process_seconds();
   work();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  return {taken.count(), static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC,
-          peak_memory_mb()};
+  return {taken.count(), process_seconds() - cpu, peak_memory_mb()};
 }
 
 double filled(const std::vector<Sphere>& spheres) {

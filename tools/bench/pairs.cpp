@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <random>
 
@@ -23,12 +22,6 @@ constexpr double kMicrometre = 1e-6;
 // Pairs with more triangles than this compare fewer poses with the truth, which takes seconds.
 constexpr std::size_t kLarge = 50000;
 
-double cpu_seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 // Pose of b against a: turned, with its centre of mass at a distance along a direction.
 struct Approach {
   Rotation turn;
@@ -41,10 +34,10 @@ class MeasuredPair {
  public:
   MeasuredPair(const PairOfSolids& solids, const SuiteOptions& options)
       : solids_(about_centers(solids)), options_(options) {
-    const double start = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const double start = process_seconds();
     a_ = std::make_shared<const SolidSurface>(solids_.a);
     b_ = std::make_shared<const SolidSurface>(solids_.b);
-    build_seconds_ = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    build_seconds_ = process_seconds() - start;
     pair_.emplace(a_, b_);
     smaller_ = std::min(a_->volume(), b_->volume());
   }
@@ -151,9 +144,9 @@ class MeasuredPair {
     std::vector<std::vector<double>> samples(poses.size());
     for (int run = 0; run < runs; ++run)
       for (std::size_t k = 0; k < poses.size(); ++k) {
-        const double start = cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
+        const double start = thread_seconds();
         pair_->measure({}, poses[k], with_force);
-        samples[k].push_back(1e6 * (cpu_seconds(CLOCK_THREAD_CPUTIME_ID) - start));
+        samples[k].push_back(1e6 * (thread_seconds() - start));
       }
     std::vector<double> medians;
     for (auto& of_pose : samples) medians.push_back(spread_of(of_pose).median);

@@ -5,8 +5,10 @@
 
 namespace vpm::bench {
 
-// Returns the CPU time that this thread has used, s: other processes do not add to it.
+// Return the CPU time that this thread, or all threads of the process, have used, s: other
+// processes do not add to it.
 double thread_seconds();
+double process_seconds();
 
 struct Spread {
   double median = 0, quartile1 = 0, quartile3 = 0, min = 0, max = 0;
