@@ -89,9 +89,9 @@ class SceneSum {
     return knows_all_space() ? visibility_of({}, volume_fraction()) : visibility_;
   }
 
-  // Returns between which volumes, m^3, that in all bodies lies 95 times of 100; nothing if one
-  // does not tell its variance. What errs is a sum of many parts, so its distribution is normal
-  // nearly.
+  // Returns the bounds, m^3, between which the true volume inside all bodies lies 95 times of 100;
+  // nothing if a body does not tell its variance. The error is a sum of many parts, so it is
+  // taken to be normally distributed.
   std::optional<Interval> volume_interval(double tool_volume) const {
     constexpr double kDeviations = 1.96;
     if (bodies_of_variance_ < bodies_) return std::nullopt;

@@ -8,8 +8,8 @@
 
 namespace vpm {
 
-// Replaces `best`, a point at the squared distance `best2` from x, by the closest point of the
-// segment from a to b where that is nearer, in the lanes that `take` selects.
+// Moves `best`, the closest point to x that is known so far, to the closest one of the segment from
+// a to b where that is nearer, in the lanes that `take` selects. `best2` is its squared distance.
 template <class Mask>
 [[gnu::always_inline]] inline void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
                                                 const Mask& take, Vec3x4& best, Double4& best2) {
@@ -29,8 +29,8 @@ template <class Mask>
   best = {nearer ? p.x : best.x, nearer ? p.y : best.y, nearer ? p.z : best.z};
 }
 
-// Computes the closest points and their squared distances from x. A distance that is not below
-// `within2` may come out infinite.
+// Finds in each lane the point of the triangle abc that is closest to x, and its squared distance.
+// A squared distance that is not below `within2` may come out infinite.
 [[gnu::always_inline]] inline void closest_points_on_triangles(const Vec3x4& x, const Vec3x4& a,
                                                                const Vec3x4& b, const Vec3x4& c,
                                                                double within2, Vec3x4& best,

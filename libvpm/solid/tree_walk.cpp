@@ -161,7 +161,7 @@ struct Placed {
   return pairs_that_meet(a, 0, at, pose) | pairs_that_meet(a, 2, at, pose) << 8;
 }
 
-// Asks for the memory of a node that is needed soon.
+// Prefetches a node of a tree into the cache, since the walk comes to it soon.
 [[gnu::always_inline]] inline void fetch(const SurfaceTree::Node& node) {
   constexpr std::size_t kLine = 64;
   for (std::size_t at = 0; at < sizeof node; at += kLine)

@@ -117,8 +117,8 @@ TEST_F(Intervals, HoldTheTruthBehindANoisyWall) {
   }
 }
 
-// Cameras that are not where they are said to be disagree alike over all of the tool, which no mean
-// over pixels takes away.
+// A camera that is not where its pose says errs alike over all of the tool, and no mean over pixels
+// takes that away; only another camera, which disagrees, can tell.
 TEST_F(Intervals, HoldTheTruthBetweenCamerasThatDisagree) {
   Coverage coverage, of_one;
   for (std::uint64_t draw = 0; draw < 60; ++draw) {

@@ -63,9 +63,9 @@ class VPM_API Query {
 
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
   // thousands of poses of up to 16 tools at once, and on the CPU each thread takes jobs of its own,
-  // with memory like that of another() that is kept for the next jobs. Throws
-  // Error(invalid_argument) unless `results` has the size of `jobs`, for a job without such a tool
-  // and for coherent queries of several tools; else as for one pose: then results are unspecified.
+  // with memory like that of another() that is kept for the next jobs. Throws as run() of one pose,
+  // and Error(invalid_argument) if there are not as many results as jobs, if a job names no tool of
+  // the query, or a coherent one has several tools; the results are unspecified then.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Begins to answer poses of the first tool that lie in the memory of the query's device, and

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLeastShare = .005;  // of the tool, at the poses in clutter and rooms
 
-// A tool as all peers have it.
+// Holds what each peer makes of one tool: packing and model, point shells, and voxels.
 struct DepthTool {
   DepthTool(const std::string& shape, const SuiteOptions& options)
       : levels(options.quick ? std::vector<std::uint32_t>{30, 100}
