@@ -4,8 +4,9 @@
 #
 # BEFORE and AFTER are made by scripts/bundle.sh of control-loop and vpm-query; LEVELS are like 1000,17000. For each cloud
 # and level, the two builds take turns in ROUNDS (5) rounds, in which either begins: ten thousand queries of one tool, ten
-# thousand with eight tools and clouds in turn so that caches do not help, and a hundred thousand poses in batches of
-# 16384. Reports the medians of the rounds and AFTER's time over BEFORE's, with the range of that ratio over the rounds.
+# thousand with eight tools and clouds in turn so that caches do not help, and poses in batches of the sizes BATCHES (16384),
+# a hundred thousand of the largest. PLACES are the poses (path, clutter; control-loop's at=). Reports the medians of the
+# rounds and AFTER's time over BEFORE's, with the range of that ratio over the rounds.
 set -euo pipefail
 before=$1 after=$2 out=$3 tool=$4 levels=$5
 shift 5
@@ -40,10 +41,16 @@ for cloud in "$@"; do
   for level in ${levels//,/ }; do
     answers_alike || { echo "$cloud, $level spheres: the answers differ" >&2; failed=1; }
     for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
-      name=$(basename "$cloud" .vpmc)-$level
-      row "$name-one-$round" queries=10000
-      row "$name-eight-$round" rotate=8 queries=10000
-      row "$name-batch-$round" batch=16384 queries=114688
+      for at in ${PLACES:-path}; do
+        name=$(basename "$cloud" .vpmc)-$level
+        places=()
+        if [[ $at != path ]]; then name+=-$at places=(at="$at"); fi
+        row "$name-one-$round" queries=10000 "${places[@]}"
+        row "$name-eight-$round" rotate=8 queries=10000 "${places[@]}"
+        for size in ${BATCHES:-16384}; do
+          row "$name-batch$size-$round" batch="$size" queries=$((16384 + 6 * size)) "${places[@]}"
+        done
+      done
     done
   done
 done
@@ -62,7 +69,7 @@ report = {"command": "scripts/cuda_compare.sh", "device": smi.stdout.strip(), "s
 for name, builds in rows.items():
     figures = {}
     # A batch is told by its poses a second, whose ratio is turned round: a larger one is slower, as with times.
-    for key in ["poses_per_second"] if name.endswith("-batch") else ["median_us", "p99_us"]:
+    for key in ["poses_per_second"] if "-batch" in name else ["median_us", "p99_us"]:
         before, after = ([report[key] for report in builds[build]] for build in ("before", "after"))
         ratios = [b / a if key == "poses_per_second" else a / b for b, a in zip(before, after)]
         figures[key] = {"before": statistics.median(before), "after": statistics.median(after),

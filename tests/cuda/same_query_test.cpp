@@ -43,14 +43,27 @@ std::vector<Pose> poses_of(int count) {
   return poses;
 }
 
-// Compares a batch with results that repeat for further poses.
+// Returns the sizes of the batches that are tried of so many poses, one after another: a pose of few
+// has many of the device's blocks, one of many has one, and a launch must leave its memory clean.
+std::vector<std::size_t> batch_sizes(std::size_t all) {
+  std::vector<std::size_t> sizes{all};
+  for (const std::size_t few : {2, 5, 300})
+    if (few < all) sizes.push_back(few);
+  return sizes;
+}
+
+// Compares batches with results that repeat for further poses.
 void expect_same_batch(ToolQuery& query, const AnyBody& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
-  std::vector<Result> batch(poses.size());
-  query.run(cloud, jobs_of(poses), batch);
-  for (std::size_t k = 0; k < batch.size(); ++k) {
-    SCOPED_TRACE(k);
-    expect_equal(expected[k % expected.size()], batch[k]);
+  const std::vector<Job> jobs = jobs_of(poses);
+  for (const std::size_t size : batch_sizes(poses.size())) {
+    SCOPED_TRACE(size);
+    std::vector<Result> batch(size);
+    query.run(cloud, std::span(jobs).first(size), batch);
+    for (std::size_t k = 0; k < size; ++k) {
+      SCOPED_TRACE(k);
+      expect_equal(expected[k % expected.size()], batch[k]);
+    }
   }
 }
 
@@ -363,11 +376,11 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
     if (expected.back().volume > 0) touching.insert(tool);
   }
   EXPECT_GT(touching.size(), 8U);
-  // Runs twice, since a launch must leave its teams' memory clean. Then runs each tool alone.
-  for (int turn = 0; turn < 2; ++turn) {
-    std::vector<Result> results(poses.size());
-    ToolQuery::run(together, cloud, poses, results);
-    for (std::size_t k = 0; k < poses.size(); ++k) {
+  for (const std::size_t size : batch_sizes(poses.size())) {
+    SCOPED_TRACE(size);
+    std::vector<Result> results(size);
+    ToolQuery::run(together, cloud, std::span(poses).first(size), results);
+    for (std::size_t k = 0; k < size; ++k) {
       SCOPED_TRACE(k);
       expect_equal(expected[k], results[k]);
     }

@@ -15,7 +15,7 @@
 #include "libvpm/synthetic/surface.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
-#include "tools/bench/random_poses.h"
+#include "tools/bench/random_draws.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
 

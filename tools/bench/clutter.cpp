@@ -4,20 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/synthetic/render.h"
-#include "tools/bench/random_poses.h"
+#include "tools/bench/random_draws.h"
 
 namespace vpm::bench {
 namespace {
 
-constexpr std::uint64_t kThingSeed = 12, kClutterHoleSeed = 13, kClutterPoseSeed = 14;
-
-// Returns a number of a bell-shaped distribution, -2 to 2.
-double within_two(synthetic::NormalNumbers& numbers) {
-  return std::clamp(numbers.next(), -2.0, 2.0);
-}
+constexpr std::uint64_t kThingSeed = 12, kClutterHoleSeed = 13;
 
 // Unsets the pixels to the right of nearer ones, as far as the shadow of what is nearer falls.
 void unset_shadows(DepthImage& image, double shift) {
@@ -82,21 +78,6 @@ Cloud make_clutter(std::uint64_t noise_seed) {
   unset_shadows(image, camera.intrinsics.fx * kBaseline);
   unset_holes(image);
   return assemble_cloud(image, camera, estimate_normals(image, camera.intrinsics, {}));
-}
-
-std::vector<Pose> poses_in_clutter(const Cloud& cloud, std::size_t count) {
-  constexpr double kOffSurface = 0.025;  // m
-  std::vector<Pose> poses;
-  for (std::uint64_t k = 0; poses.size() < count; ++k) {
-    synthetic::NormalNumbers numbers(kClutterPoseSeed, k);
-    const double fraction = std::fabs(within_two(numbers)) / 2;
-    const auto point =
-        static_cast<std::size_t>(fraction * static_cast<double>(cloud.positions.size() - 1));
-    const Vec3 aside{within_two(numbers), within_two(numbers), within_two(numbers)};
-    const Vec3 at = cloud.origin + widen(cloud.positions[point]) + kOffSurface * aside;
-    poses.push_back({random_rotation(numbers), at});
-  }
-  return poses;
 }
 
 }  // namespace vpm::bench

@@ -1,13 +1,10 @@
-// A cluttered table before a camera, and random poses of a tool in it: a wall alone flatters, since
-// a query's time depends on the steps, edges and holes of the image that lie near the tool.
+// A cluttered table before a camera: a wall alone flatters, since a query's time depends on the
+// steps, edges and holes of the image that lie near the tool.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/core/pose.h"
 #include "libvpm/synthetic/surface.h"
 
 namespace vpm::bench {
@@ -20,9 +17,5 @@ Cloud make_clutter(std::uint64_t noise_seed = kClutterNoiseSeed);
 
 // Returns the surface of that table, as it truly is.
 synthetic::SurfacePtr clutter_surface();
-
-// Returns random poses, each about a point of a cloud with a camera, up to 5 cm away from it along
-// each axis, with any rotation. The same for the same cloud and number.
-std::vector<Pose> poses_in_clutter(const Cloud& cloud, std::size_t count);
 
 }  // namespace vpm::bench

@@ -1,6 +1,7 @@
 // control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]: times the queries of a haptic or robot
 // controller. The tool slides over the surface in the middle of the cloud, turning, 5 to 10 % of
 // its volume inside. Every pose is one query, and its answer is awaited before the next.
+//   at=path       or clutter: random poses about points of the cloud
 //   device=auto   cpu, cuda, cuda:1, cuda:all
 //   queries=10000
 //   measure=refined  or paper; the path is the same
@@ -28,6 +29,7 @@
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/scene/depth_frames.h"
+#include "tools/bench/poses_in_clutter.h"
 
 namespace {
 
@@ -35,7 +37,12 @@ using namespace vpm;
 using Options = std::map<std::string, std::string>;
 
 constexpr int kWarmUp = 200;  // queries before the timed ones
+// Poses that are computed before each query, of which the last is asked: one takes no longer than
+// reading the clock.
+constexpr int kPaceOf = 32;
 constexpr double kPi2 = 6.28318530717958648;
+
+constexpr int kFirst = kWarmUp + kPaceOf;  // poses before that of number 0
 
 // Path of the tool. `shallow` and `deep` are heights of its centre of mass above the point on which
 // it slides, metres.
@@ -43,13 +50,18 @@ struct Path {
   Vec3 place, normal, side;
   double shallow = 0, deep = 0, swing = 0;
 
+  // Poses that are taken one after another instead, if there are any.
+  std::vector<Pose> poses;
+
   Pose at(const ToolModel& tool, double height, double turn, Vec3 aside) const {
     const double half = turn / 2, s = std::sin(half);
     const Pose pose{
         rotation_from_quaternion({s * normal.x, s * normal.y, s * normal.z, std::cos(half)}), {}};
     return {pose.rotation, place + height * normal + aside - pose.rotation * tool.center_of_mass};
   }
+  // Returns the k-th pose, which is one of the warm-up below 0.
   Pose at(const ToolModel& tool, int k) const {
+    if (!poses.empty()) return poses[static_cast<std::size_t>(k + kFirst) % poses.size()];
     const double along = 1e-3 * k;
     const double height = (shallow + deep) / 2 + (shallow - deep) / 2 * std::sin(kPi2 * 3 * along);
     const Vec3 aside = swing * std::sin(kPi2 * along) * side +
@@ -156,8 +168,6 @@ double run_batches(std::deque<ToolQuery>& tools, const AnyBody& cloud, const Too
 
 Figures run(std::deque<ToolQuery>& queries, const std::deque<AnyBody>& clouds,
             const ToolModel& tool, const Path& path, int count) {
-  // Computes this many poses and asks the last, since one takes no longer than reading the clock.
-  constexpr int kPaceOf = 32;
   std::vector<double> microseconds, host_us;
   microseconds.reserve(static_cast<std::size_t>(count));
   host_us.reserve(static_cast<std::size_t>(count));
@@ -320,7 +330,8 @@ Options parse(int argc, char** argv) {
   Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
-                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"}};
+                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
+                  {"at", "path"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
@@ -328,7 +339,7 @@ Options parse(int argc, char** argv) {
       throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
-                      "rotate= frames= behind= method= batch= json= poses= path=");
+                      "rotate= frames= behind= method= batch= json= poses= path= at=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -354,6 +365,14 @@ Measure measure_of(const Options& options) {
   if (measure == "paper") return Measure::paper;
   if (measure == "refined") return Measure::refined;
   throw Error(ErrorKind::invalid_argument, "measure=" + measure + ": there are refined and paper");
+}
+
+// Returns the poses that are taken instead of the path's; none with at=path.
+std::vector<Pose> poses_of(const std::string& at, const Cloud& cloud) {
+  constexpr std::size_t kPoses = 4096;
+  if (at == "clutter") return bench::poses_in_clutter(cloud, kPoses);
+  if (at == "path") return {};
+  throw Error(ErrorKind::invalid_argument, "at=" + at + ": there are path and clutter");
 }
 
 // Makes one camera for each copy of the tool, or none with frames=none.
@@ -403,7 +422,8 @@ void control(int argc, char** argv) {
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
   std::deque<AnyBody> clouds{AnyBody(cloud)};
   ToolQuery refined(tool, asked);
-  const Path path = make_path(refined, clouds[0], tool);
+  Path path = make_path(refined, clouds[0], tool);
+  path.poses = poses_of(options.at("at"), cloud);
   asked.measure = measure_of(options);
   std::deque<ToolQuery> queries;
   for (int k = 0; k < copies; ++k) {

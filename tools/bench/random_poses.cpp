@@ -7,6 +7,7 @@
 #include "libvpm/query/tool_query.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
+#include "tools/bench/random_draws.h"
 #include "tools/bench/sight.h"
 
 namespace vpm::bench {
@@ -23,12 +24,6 @@ double counted(const PackedSolid& tool, const Pose& pose, const synthetic::Surfa
 }
 
 }  // namespace
-
-Rotation random_rotation(synthetic::NormalNumbers& numbers) {
-  const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
-  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
-}
 
 Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
   synthetic::NormalNumbers numbers(seed, k);

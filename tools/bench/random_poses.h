@@ -40,7 +40,4 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
 // the scenes' middle. `reach` is the tool's, m.
 Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach);
 
-// Returns a uniformly distributed rotation; draws four numbers.
-Rotation random_rotation(synthetic::NormalNumbers& numbers);
-
 }  // namespace vpm::bench

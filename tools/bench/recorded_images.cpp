@@ -9,7 +9,7 @@
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/query/tool_query.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/random_poses.h"
+#include "tools/bench/random_draws.h"
 #include "tools/bench/sight.h"
 #include "tools/bench/silhouettes.h"
 

@@ -19,6 +19,7 @@
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/clutter.h"
+#include "tools/bench/poses_in_clutter.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"

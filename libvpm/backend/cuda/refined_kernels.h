@@ -1,5 +1,5 @@
-// Defines the kernels of the refined measure, for refined_measure.cu: one pose by all blocks, and
-// many poses by a block each.
+// Defines the kernels of the refined measure, for refined_measure.cu: one pose by all blocks, a few
+// poses by teams of some blocks, and many poses by a block each.
 #pragma once
 
 #include <type_traits>
@@ -32,6 +32,21 @@ struct RefinedLaunch {
   Answer* answer = nullptr;
 };
 
+// Counts what the blocks of a batch have done; all 0 between launches.
+struct BatchState {
+  unsigned taken = 0;  // poses that blocks or teams have taken after their first
+  unsigned done = 0;   // blocks that are done
+};
+
+// Holds what the blocks of one team share: by turns, since the last of them clears that of one pose
+// while others begin with the next. All 0 between launches.
+struct TeamState {
+  RawResult results[2];
+  RefinedCounters counters[2];
+  unsigned next[2] = {};  // the pose after this
+  unsigned arrived = 0;   // counter of MeetingTeam
+};
+
 // Holds the arguments of a launch for many poses of several tools.
 template <class Surface>
 struct BatchLaunch {
@@ -40,13 +55,16 @@ struct BatchLaunch {
   LevelView levels[kTools];
   unsigned ends[kTools];  // end of each tool's poses, which follow those of the tool before
   Surface surface;
-  RefinedSpace space;  // memory of the first team
-  TeamRoom room;       // size of one team's memory
+  RefinedSpace space;   // memory of the first team
+  TeamRoom room;        // size of one team's memory
+  BatchState* state;    // of the whole launch
+  TeamState* of_teams;  // of teams of several blocks, of `blocks` each
+  unsigned blocks = 1;
 };
 
-// Returns the memory of one of several teams of one block each.
-__device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room,
-                                 std::size_t team) {
+// Returns the memory of one of several teams, the first of whose blocks is given.
+__device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room, std::size_t team,
+                                 std::size_t block) {
   const std::size_t cells = team * room.cells;
   RefinedSpace space;
   for (int turn = 0; turn < 2; ++turn) {
@@ -57,8 +75,8 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
   space.parents = first.parents + cells + team;
   space.cut = first.cut + cells;
   space.far = first.far + team * room.pieces;
-  space.clipped_blocks = first.clipped_blocks + team * 2 * TaskLists::kTasks;
-  space.planar_clusters = first.planar_clusters + team * kBatchThreads;
+  space.clipped_blocks = first.clipped_blocks + block * 2 * TaskLists::kTasks;
+  space.planar_clusters = first.planar_clusters + block * kBatchThreads;
   return space;
 }
 
@@ -82,21 +100,25 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
-// Runs the first step of one query by all blocks of a launch. Returns the sums of this thread.
+// Returns what the blocks of a launch that share one pose know of it.
 template <class Surface>
-__device__ ThreadResult measure_cells(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
-                                      unsigned turn, BlockShared<Surface>& shared) {
-  const PoseWork<Surface> work{launch.level,
-                               launch.surface,
-                               to_surface,
-                               launch.space,
-                               launch.space.notes[turn % 2],
-                               *launch.counters,
-                               {blockIdx.x, gridDim.x}};
+__device__ PoseWork<Surface> work_of(const RefinedLaunch<Surface>& launch, const Pose& to_surface,
+                                     unsigned turn) {
+  return {launch.level,
+          launch.surface,
+          to_surface,
+          launch.space,
+          launch.space.notes[turn % 2],
+          *launch.counters,
+          {blockIdx.x, gridDim.x}};
+}
+
+// Runs the first step of one query by the blocks that share it. Returns the sums of this thread.
+template <class Surface>
+__device__ ThreadResult measure_cells(const PoseWork<Surface>& work, BlockShared<Surface>& shared) {
   if constexpr (TellsSight<Surface>) clear_unseen();
   if constexpr (kHasImageSchedule<Surface>) {
-    if (ImageMeasure::is_for(launch.level, work.part))
-      return ImageMeasure(work, shared.image).run();
+    if (ImageMeasure::is_for(work.level, work.part)) return ImageMeasure(work, shared.image).run();
   }
   ThreadResult found;
   GroupMeasure<Surface>(work, shared.measure, found).run();
@@ -111,20 +133,11 @@ __device__ void add_first_step(const ThreadResult& found, RawResult& total) {
   if constexpr (TellsSight<Surface>) add_unseen_of_warps(total.unseen);
 }
 
-// Notes the planes of cut cells if the first step has not; few queries need them.
-__device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
-                                         const Pose& to_surface, unsigned turn,
+// Notes the planes of cut cells if the first step has not; few queries need them. Takes a copy of
+// the work: a reference would keep the caller's in memory all along.
+__device__ __noinline__ void note_planes(PoseWork<DepthSurface> work,
                                          BlockShared<DepthSurface>& shared) {
-  const BlockRange part{blockIdx.x, gridDim.x};
-  if (!ImageMeasure::is_for(launch.level, part)) return;
-  const PoseWork<DepthSurface> work{launch.level,
-                                    launch.surface,
-                                    to_surface,
-                                    launch.space,
-                                    launch.space.notes[turn % 2],
-                                    *launch.counters,
-                                    part};
-  ImageMeasure(work, shared.image).note_planes();
+  if (ImageMeasure::is_for(work.level, work.part)) ImageMeasure(work, shared.image).note_planes();
 }
 
 // Clears the notes for the next query, while nobody waits.
@@ -141,7 +154,7 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
                    const __grid_constant__ Pose to_surface, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
   __shared__ RawResult total;
-  measure_cells(launch, to_surface, sequence, shared);
+  measure_cells(work_of(launch, to_surface, sequence), shared);
   if (!is_last_of(launch.totals->done, gridDim.x)) {
     clear_next(launch, sequence);
     return;
@@ -169,7 +182,7 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const ThreadResult found = measure_cells(launch, to_surface, sequence, shared);
+  const ThreadResult found = measure_cells(work_of(launch, to_surface, sequence), shared);
   add_first_step<Surface>(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
@@ -189,7 +202,7 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
   }
   if (has_more()) {
     if constexpr (kHasImageSchedule<Surface>)
-      if (far > 0) note_planes(launch, to_surface, sequence, shared);
+      if (far > 0) note_planes(work_of(launch, to_surface, sequence), shared);
     GridTeam meeting = team;  // a copy, since a function's argument lies in memory
     Rest rest(launch.level, launch.surface, to_surface, launch.space, sequence, *launch.counters,
               meeting, shared.inside);
@@ -213,7 +226,73 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   answer_pose(launch, to_surface, sequence, team, shared);
 }
 
-// Answers one query after another in each block.
+// Answers one query after another in each team of some blocks, which take the next one as they are
+// done: a pose in clutter takes up to ten times as long as another.
+template <class Surface>
+__global__ void __launch_bounds__(kThreads, kFewBlocks)
+    few_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,
+              unsigned count, RawResult* results) {
+  using Team = MeetingTeam<SomeBlocks>;
+  using Rest = Inside<Surface, Team>;
+  __shared__ BlockShared<Surface> shared;
+  __shared__ Pose to_surface;
+  __shared__ RefinedSpace space;
+  __shared__ unsigned next;
+  const unsigned number = blockIdx.x / launch.blocks, teams = gridDim.x / launch.blocks;
+  const BlockRange part{blockIdx.x % launch.blocks, launch.blocks};
+  if (threadIdx.x == 0)
+    space = space_of(launch.space, launch.room, number, std::size_t{number} * launch.blocks);
+  TeamState& state = launch.of_teams[number];
+  Team team(&state.arrived, {part});
+  const auto clear_notes = [&](const LevelView& level) {
+    for (const CellNotes& notes : space.notes) notes.clear(level, part);
+  };
+  unsigned turn = 0, tool = 0;
+  for (unsigned p = number; p < count; p = next, ++turn) {
+    __syncthreads();
+    if (p >= launch.ends[tool]) {
+      clear_notes(launch.levels[tool]);
+      while (p >= launch.ends[tool]) ++tool;
+      team.sync();
+    }
+    if (threadIdx.x == 0) to_surface = to_surfaces[p];
+    __syncthreads();
+    const LevelView& level = launch.levels[tool];
+    RawResult& result = state.results[turn % 2];
+    RefinedCounters& counters = state.counters[turn % 2];
+    const auto work = [&]() -> PoseWork<Surface> {
+      return {level, launch.surface, to_surface, space, space.notes[turn % 2], counters, part};
+    };
+    add_first_step<Surface>(measure_cells(work(), shared), result);
+    team.arrive();
+    space.notes[(turn + 1) % 2].clear(level, part);  // while others arrive
+    team.wait();
+    const unsigned far = read_for_block(counters).far;
+    if (Rest::has_more(far)) {
+      if constexpr (kHasImageSchedule<Surface>) note_planes(work(), shared);
+      Team meeting = team;  // a copy, since a function's argument lies in memory
+      Rest rest(level, launch.surface, to_surface, space, turn, counters, meeting, shared.inside);
+      add_block(rest.run(result.unseen), result);
+      team = meeting;
+    }
+    if (part.part == 0 && threadIdx.x == 0)
+      state.next[turn % 2] = teams + atomicAdd(&launch.state->taken, 1U);
+    if (team.arrive() && threadIdx.x == 0) {
+      results[p] = result;
+      result = RawResult{};
+      counters = RefinedCounters{};
+    }
+    team.wait();
+    if (threadIdx.x == 0) next = read(state.next[turn % 2]);
+    __syncthreads();
+  }
+  clear_notes(launch.levels[tool]);  // the next launch begins with turn 0
+  if (!is_last_of(launch.state->done, gridDim.x)) return;
+  for (unsigned k = threadIdx.x; k < teams; k += blockDim.x) launch.of_teams[k].arrived = 0;
+  if (threadIdx.x == 0) *launch.state = BatchState{};
+}
+
+// Answers one query after another in each block, which takes the next one as it is done.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     many_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,
@@ -227,13 +306,14 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ ThreadResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
   ThreadResult of_flood, &found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
   __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory
-  if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x);
+  __shared__ unsigned next;
+  if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
     for (const CellNotes& notes : space.notes) notes.clear(level, {});
   };
   BlockTeam team;
   unsigned turn = 0, tool = 0;
-  for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
+  for (unsigned p = blockIdx.x; p < count; p = next, ++turn) {
     __syncthreads();
     if (p >= launch.ends[tool]) {
       clear_notes(launch.levels[tool]);
@@ -245,6 +325,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
       to_surface = to_surfaces[p];
       counters = RefinedCounters{};
       total = RawResult{};
+      next = gridDim.x + atomicAdd(&launch.state->taken, 1U);
     }
     __syncthreads();
     const PoseWork<Surface> work{
@@ -265,6 +346,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     if (threadIdx.x == 0) results[p] = total;
   }
   clear_notes(launch.levels[tool]);  // the next launch begins with turn 0
+  if (is_last_of(launch.state->done, gridDim.x) && threadIdx.x == 0) *launch.state = BatchState{};
 }
 
 }  // namespace
@@ -288,7 +370,7 @@ class RefinedMemory {
     constexpr std::size_t kOfCell =
         2 * (sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
-    return room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
+    return sizeof(TeamState) + room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
            2 * TaskLists::kTasks * sizeof(ClippedBlock) + kBatchThreads * sizeof(PlanarCluster);
   }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "libvpm/backend/cuda/answer.h"
 #include "libvpm/backend/cuda/device_level.h"
@@ -37,13 +38,34 @@ struct PoseKernel {
   }
 };
 
-// Holds the teams that share the work of a batch.
+// Returns how many teams, of an equal number of the device's blocks, answer so many poses soonest.
+// A launch takes the fixed time of a pose (meetings and waits, whatever is to be done) once for
+// each pose of a team, and at its end as long as the dearest pose takes one team. More teams
+// shorten the first and lengthen the second; their sum is least at this root.
+unsigned teams_for(unsigned poses, unsigned blocks) {
+  // The time of the dearest pose in one block over the fixed time: 12 before a wall, 400 in clutter
+  // (H200), and in between here.
+  constexpr double kDearest = 66;
+  const double teams = std::ceil(std::sqrt(poses * (blocks / kDearest)));
+  return std::min(poses, static_cast<unsigned>(teams));
+}
+
+// Holds the memory of the blocks that share the work of a batch.
 struct Teams {
-  Teams(unsigned teams, const TeamRoom& wanted)
-      : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
+  Teams(unsigned blocks, const TeamRoom& wanted)
+      : count(blocks),
+        room(wanted),
+        memory(room, count, count, kBatchThreads),
+        of_teams(count),
+        state(1) {
+    of_teams.clear();
+    state.clear();
+  }
   unsigned count;
   TeamRoom room;
   RefinedMemory memory;
+  DeviceArray<TeamState> of_teams;
+  DeviceArray<BatchState> state;
 };
 
 // Holds the jobs of one launch, and where it takes and leaves them.
@@ -240,7 +262,13 @@ class RefinedOnDevice : public DeviceMeasure {
   template <class Surface>
   void launch_batch(const Surface& surface, std::span<DeviceMeasure* const> measures,
                     std::span<const JobOrder::Part> parts) {
-    BatchLaunch<Surface> arguments{{}, {}, surface, teams_->memory.space(), teams_->room};
+    BatchLaunch<Surface> arguments{{},
+                                   {},
+                                   surface,
+                                   teams_->memory.space(),
+                                   teams_->room,
+                                   teams_->state.get(),
+                                   teams_->of_teams.get()};
     for (unsigned begin = 0; !parts.empty();) {
       const std::size_t count = std::min<std::size_t>(arguments.kTools, parts.size());
       for (std::size_t t = 0; t < count; ++t) {
@@ -248,12 +276,30 @@ class RefinedOnDevice : public DeviceMeasure {
         arguments.ends[t] = parts[t].end - begin;
       }
       const unsigned end = parts[count - 1].end;
-      launch_kernel(many_poses<Surface>, {std::min(teams_->count, end - begin), kBatchThreads},
-                    LaunchKind::independent, stream_.get(), arguments, batch_->poses.get() + begin,
-                    end - begin, batch_->results.get() + begin);
+      launch_poses(arguments, begin, end);
       parts = parts.subspan(count);
       begin = end;
     }
+  }
+
+  // Launches the poses from `begin` to `end`: by teams of several blocks, if teams_for() so many
+  // leave a team more than one.
+  template <class Surface>
+  void launch_poses(BatchLaunch<Surface>& arguments, unsigned begin, unsigned end) {
+    const unsigned count = end - begin;
+    const auto launch = [&](auto kernel, const LaunchSize& size, LaunchKind kind) {
+      launch_kernel(kernel, size, kind, stream_.get(), arguments, batch_->poses.get() + begin,
+                    count, batch_->results.get() + begin);
+    };
+    const unsigned blocks =
+        std::min(teams_->count, blocks_that_fit(few_poses<Surface>, kThreads, kFewBlocks));
+    const unsigned teams = teams_for(count, blocks);
+    arguments.blocks = blocks / teams;
+    if (arguments.blocks > 1)
+      launch(few_poses<Surface>, {teams * arguments.blocks, kThreads}, LaunchKind::cooperative);
+    else
+      launch(many_poses<Surface>, {std::min(teams_->count, count), kBatchThreads},
+             LaunchKind::independent);
   }
 
   int device_;

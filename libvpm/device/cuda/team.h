@@ -46,21 +46,34 @@ class BlockTeam {
   __device__ void sync() { __syncthreads(); }
 };
 
-// Makes all blocks of a cooperative launch the team.
-class GridTeam {
+// Names all blocks of a launch.
+struct AllBlocks {
+  __device__ BlockRange range() const { return {blockIdx.x, gridDim.x}; }
+};
+// Names some blocks of a launch, of which this one is a part.
+struct SomeBlocks {
+  BlockRange blocks;
+  __device__ BlockRange range() const { return blocks; }
+};
+
+// Makes blocks of a cooperative launch the team: all of them, or as many as Blocks names.
+template <class Blocks>
+class MeetingTeam {
  public:
   static constexpr bool kIsBlock = false;
-  __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
-  __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
-  __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
-  __device__ BlockRange block() const { return {blockIdx.x, gridDim.x}; }
+  // Meets by a counter of the team's own, which is 0 before.
+  __device__ explicit MeetingTeam(unsigned* arrived, Blocks blocks = {})
+      : arrived_(arrived), blocks_(blocks) {}
+  __device__ unsigned thread() const { return block().part * blockDim.x + threadIdx.x; }
+  __device__ unsigned threads() const { return block().parts * blockDim.x; }
+  __device__ BlockRange block() const { return blocks_.range(); }
   __device__ void sync() {
     arrive();
     wait();
   }
   // Begins sync(). True for the last block to arrive.
   __device__ bool arrive() {
-    target_ += gridDim.x;
+    target_ += block().parts;
     return is_last_of(*arrived_, target_);
   }
   // Ends sync(). Spins with relaxed loads, since each acquire drops the multiprocessor's L1 cache,
@@ -78,8 +91,10 @@ class GridTeam {
   using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
   __device__ Count count() const { return Count(*arrived_); }
 
-  unsigned* arrived_;  // 0 at the start of a query
+  unsigned* arrived_;
+  [[no_unique_address]] Blocks blocks_;
   unsigned target_ = 0;
 };
+using GridTeam = MeetingTeam<AllBlocks>;
 
 }  // namespace vpm::cuda

@@ -12,6 +12,7 @@
 #include "tools/bench/peers/point_shell.h"
 #include "tools/bench/peers/shells.h"
 #include "tools/bench/penetration_case.h"
+#include "tools/bench/poses_in_clutter.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/replay_peers.h"
 
