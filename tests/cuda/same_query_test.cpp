@@ -43,8 +43,9 @@ std::vector<Pose> poses_of(int count) {
   return poses;
 }
 
-// Returns the sizes of the batches that are tried of so many poses, one after another: a pose of few
-// has many of the device's blocks, one of many has one, and a launch must leave its memory clean.
+// Returns the sizes of the batches that are tried of so many poses, one after another: a pose of
+// few has many of the device's blocks, one of many has one, and a launch must leave its memory
+// clean.
 std::vector<std::size_t> batch_sizes(std::size_t all) {
   std::vector<std::size_t> sizes{all};
   for (const std::size_t few : {2, 5, 300})
