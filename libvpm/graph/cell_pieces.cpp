@@ -7,8 +7,10 @@
 #include <numeric>
 
 #include "libvpm/core/box.h"
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/core/vec3x4.h"
 #include "libvpm/graph/enclosing_sphere.h"
 
 namespace vpm {
@@ -25,6 +27,12 @@ constexpr double kCubicEdge = 1.2599210498948732;
 const Rotation kTurn = rotation_from_quaternion(
     {0.18257418583505536, 0.36514837167011072, 0.54772255750516607, 0.73029674334022143});
 
+// Returns the largest whole numbers that are not above x, whose lanes lie within those of Int4.
+[[gnu::always_inline]] inline Double4 floor_of(const Double4& x) {
+  const Double4 whole = widen(truncated(x));
+  return whole > x ? whole - 1.0 : whole;
+}
+
 // Sites of a body-centred cubic lattice about the origin, in units of its edge.
 class BodyCenteredSites {
  public:
@@ -35,41 +43,50 @@ class BodyCenteredSites {
     index_.assign(2 * cells, -1);
   }
 
-  // Returns the index of the site nearest to q; where that lies beyond the limit, the one nearest
-  // to a point further in.
-  int nearest(Vec3 q) {
+  // Returns the indices of the sites nearest to four places; where such a site lies beyond the
+  // limit, that of the one nearest to a point further in.
+  [[gnu::always_inline]] std::array<int, kFour> nearest(Vec3x4 q) {
     constexpr double kStepInwards = 0.25;
     for (;;) {
-      const Site site = nearest_of_lattice(q);
-      if (norm(site.position) <= limit_ || site.position == Vec3{}) return index_of(site);
-      q = std::max(0.0, 1 - kStepInwards / norm(q)) * q;
+      const Sites corners = sites(q, 0), middles = sites(q, 0.5);
+      const Mask4 is_corner =
+          squared_norm(q - corners.position) <= squared_norm(q - middles.position);
+      const Vec3x4 position = choose(is_corner, corners.position, middles.position);
+      const Mask4 is_beyond = square_root(squared_norm(position)) > limit_;
+      if (!any(is_beyond))
+        return indices_of(choose(is_corner, corners.cell, middles.cell), is_corner);
+      const Double4 kept = 1 - kStepInwards / square_root(squared_norm(q)), none{};
+      q = choose(is_beyond, (none < kept ? kept : none) * q, q);
     }
   }
   int count() const { return count_; }
 
  private:
-  struct Site {
-    Vec3 position;
-    std::size_t slot = 0;
+  // The nearest sites of one of the two cubic lattices, and the low corners of their cells.
+  struct Sites {
+    Vec3x4 position, cell;
   };
 
-  Site site(Vec3 q, double offset, std::size_t sublattice) const {
-    const Vec3 cell{std::floor(q.x - offset + 0.5), std::floor(q.y - offset + 0.5),
-                    std::floor(q.z - offset + 0.5)};
+  [[gnu::always_inline]] static Sites sites(const Vec3x4& q, double offset) {
+    const Vec3x4 cell{floor_of(q.x - offset + 0.5), floor_of(q.y - offset + 0.5),
+                      floor_of(q.z - offset + 0.5)};
+    return {{cell.x + offset, cell.y + offset, cell.z + offset}, cell};
+  }
+  [[gnu::always_inline]] std::array<int, kFour> indices_of(const Vec3x4& cell,
+                                                           const Mask4& is_corner) {
     const auto slot = [&](double k) {
       return static_cast<std::size_t>(std::clamp(static_cast<int>(k) + half_, 0, side_ - 1));
     };
     const std::size_t side = static_cast<std::size_t>(side_);
-    return {cell + Vec3{offset, offset, offset},
-            ((slot(cell.z) * side + slot(cell.y)) * side + slot(cell.x)) * 2 + sublattice};
-  }
-  Site nearest_of_lattice(Vec3 q) const {
-    const Site corner = site(q, 0, 0), middle = site(q, 0.5, 1);
-    return squared_norm(q - corner.position) <= squared_norm(q - middle.position) ? corner : middle;
-  }
-  int index_of(const Site& site) {
-    if (index_[site.slot] < 0) index_[site.slot] = count_++;
-    return index_[site.slot];
+    std::array<int, kFour> indices{};
+    for (int k = 0; k < kFour; ++k) {
+      int& index =
+          index_[((slot(cell.z[k]) * side + slot(cell.y[k])) * side + slot(cell.x[k])) * 2 +
+                 (is_corner[k] != 0 ? 0 : 1)];
+      if (index < 0) index = count_++;
+      indices[static_cast<std::size_t>(k)] = index;
+    }
+    return indices;
   }
 
   double limit_;
@@ -85,21 +102,42 @@ struct Point {
 
 // Returns a cubic lattice of points in the ball about the origin, symmetric to it. A point at the
 // surface weighs as much as the ball covers of its cube, and is moved to the middle of that.
+VPM_VECTOR_CLONES
 std::vector<Point> points_in_ball(double radius, double spacing) {
   std::vector<Point> points;
   const int half = static_cast<int>(std::ceil(radius / spacing + 0.5));
+  const Double4 zero{}, one = zero + 1.0;
   for (int z = -half; z < half; ++z) {
     for (int y = -half; y < half; ++y) {
-      for (int x = -half; x < half; ++x) {
-        const Vec3 p = spacing * Vec3{x + 0.5, y + 0.5, z + 0.5};
-        const double distance = norm(p);
-        const double covered = std::min(1.0, (radius - distance) / spacing + 0.5);
-        if (!(covered > 0)) continue;
-        points.push_back({(1 - 0.5 * (1 - covered) * spacing / distance) * p, covered, 0});
+      for (int x = -half; x < half; x += kFour) {
+        const Vec3x4 p{spacing * (widen(Int4{x, x + 1, x + 2, x + 3}) + 0.5),
+                       zero + spacing * (y + 0.5), zero + spacing * (z + 0.5)};
+        const Double4 distance = square_root(squared_norm(p));
+        const Double4 part = (radius - distance) / spacing + 0.5;
+        if (!any(part > zero)) continue;
+        const Double4 covered = part < one ? part : one;
+        const Vec3x4 moved = (1.0 - 0.5 * (1.0 - covered) * spacing / distance) * p;
+        for (int k = 0; k < kFour; ++k)
+          if (covered[k] > 0) points.push_back({moved.of(k), covered[k], 0});
       }
     }
   }
   return points;
+}
+
+// Gives each point the piece of the site nearest to it, of a turned lattice of this edge.
+VPM_VECTOR_CLONES
+void find_pieces(double edge, BodyCenteredSites& sites, std::span<Point> points) {
+  const Double4 edges = Double4{} + edge;
+  for (std::size_t first = 0; first < points.size(); first += kFour) {
+    const auto [a, b, c, d] = four_of(std::span<const Point>(points), first);
+    const Vec3x4 p{a.position, b.position, c.position, d.position};
+    const Vec3x4 q{p.x / edges, p.y / edges, p.z / edges};
+    const std::array<int, kFour> pieces =
+        sites.nearest({dot(kTurn.row0, q), dot(kTurn.row1, q), dot(kTurn.row2, q)});
+    for (std::size_t k = 0; k < kFour && first + k < points.size(); ++k)
+      points[first + k].piece = pieces[k];
+  }
 }
 
 // Measures pieces in two passes: volumes and centroids, then moments and radii about the centroids.
@@ -123,11 +161,12 @@ void measure(const std::vector<Point>& points, double spacing, double radius,
     CellPiece& piece = pieces[static_cast<std::size_t>(p.piece)];
     const double squared = squared_norm(p.position - piece.centroid);
     piece.moment_radius += p.weight * (squared + spacing * spacing / 4);
-    piece.bounding_radius = std::max(piece.bounding_radius, std::sqrt(squared) + half_diagonal);
+    piece.bounding_radius = std::max(piece.bounding_radius, squared);
   }
   const double scale = volume({{}, radius}) / total;
   for (CellPiece& piece : pieces) {
     piece.moment_radius = std::sqrt(5.0 / 3 * piece.moment_radius / piece.volume);
+    piece.bounding_radius = std::sqrt(piece.bounding_radius) + half_diagonal;
     piece.volume *= scale;
   }
 }
@@ -144,7 +183,7 @@ void cut_ball(double radius, double size, std::vector<CellPiece>& pieces) {
   BodyCenteredSites sites(limit);
   const double spacing = size / kPointsPerSize;
   std::vector<Point> points = points_in_ball(radius, spacing);
-  for (Point& p : points) p.piece = sites.nearest(kTurn * (p.position / edge));
+  find_pieces(edge, sites, points);
   const std::size_t first = pieces.size();
   pieces.resize(first + static_cast<std::size_t>(sites.count()));
   measure(points, spacing, radius, std::span(pieces).subspan(first));
@@ -168,18 +207,12 @@ class GapCutter {
   void cut(std::span<GapSegment> segments) {
     Vec3 spread;
     const CellPiece piece = measure(segments, spread);
-    if (segments.size() == 1 || piece.moment_radius <= limit_) {
-      pieces_.push_back(piece);
-      return;
-    }
+    if (segments.size() == 1 || piece.moment_radius <= limit_) return keep(piece, segments);
     const int axis =
         spread.x >= spread.y && spread.x >= spread.z ? 0 : (spread.y >= spread.z ? 1 : 2);
     const double at = coordinate(piece.centroid + center_, axis);
     const std::size_t low = part(segments, axis, at);
-    if (low == 0 || low == segments.size()) {  // all centres coincide
-      pieces_.push_back(piece);
-      return;
-    }
+    if (low == 0 || low == segments.size()) return keep(piece, segments);  // all centres coincide
     cut(segments.first(low));
     cut(segments.subspan(low));
   }
@@ -201,8 +234,17 @@ class GapCutter {
     return low;
   }
 
-  // Returns the piece that the segments form; `spread` receives the second moments of their centres
-  // along the axes.
+  // Keeps a piece that is cut no further, with its bounding radius.
+  void keep(CellPiece piece, std::span<const GapSegment> segments) {
+    for (const GapSegment& s : segments)
+      piece.bounding_radius =
+          std::max(piece.bounding_radius,
+                   norm(s.center - center_ - piece.centroid) + norm(gap_.half_extent(s)));
+    pieces_.push_back(piece);
+  }
+
+  // Returns the piece that the segments form, without its bounding radius; `spread` receives the
+  // second moments of their centres along the axes.
   CellPiece measure(std::span<const GapSegment> segments, Vec3& spread) const {
     CellPiece piece;
     for (const GapSegment& s : segments) {
@@ -217,7 +259,6 @@ class GapCutter {
       const Vec3 d = s.center - center_ - piece.centroid, half = gap_.half_extent(s);
       spread += v * Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
       own += v * squared_norm(half) / 3;
-      piece.bounding_radius = std::max(piece.bounding_radius, norm(d) + norm(half));
     }
     piece.moment_radius =
         std::sqrt(5.0 / 3 * (spread.x + spread.y + spread.z + own) / piece.volume);

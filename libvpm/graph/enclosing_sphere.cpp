@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
+
+#include "libvpm/graph/four_spheres.h"
 
 namespace vpm {
 namespace {
@@ -17,13 +20,16 @@ struct Farthest {
   double distance = 0;  // to the far side of the sphere
 };
 
-Farthest farthest(Vec3 from, std::span<const Sphere> spheres) {
-  Farthest found{spheres.front().center, 0};
-  for (const Sphere& s : spheres) {
-    const double distance = norm(s.center - from) + s.radius;
-    if (distance > found.distance) found = {s.center, distance};
-  }
-  return found;
+// Finds the sphere that reaches farthest from a place, the first of equal ones.
+VPM_VECTOR_CLONES
+Farthest farthest(Vec3 from, std::span<const Sphere> spheres,
+                  const std::vector<FourSpheres>& fours) {
+  const Vec3x4 x{from, from, from, from};
+  LeastOfFours least;
+  for (const FourSpheres& four : fours)
+    least.add(-(square_root(squared_norm(four.centers() - x)) + four.radii()));
+  const Sphere& found = spheres[least.first()];
+  return {found.center, norm(found.center - from) + found.radius};
 }
 
 Vec3 box_center(std::span<const Sphere> spheres) {
@@ -41,16 +47,19 @@ Vec3 box_center(std::span<const Sphere> spheres) {
 }  // namespace
 
 double enclosing_radius(Vec3 center, std::span<const Sphere> spheres) {
-  return farthest(center, spheres).distance * kRoundingMargin;
+  double most = 0;
+  for (const Sphere& s : spheres) most = std::max(most, norm(s.center - center) + s.radius);
+  return most * kRoundingMargin;
 }
 
 Sphere enclosing_sphere(std::span<const Sphere> spheres) {
   if (spheres.size() == 1) return {spheres[0].center, enclosing_radius(spheres[0].center, spheres)};
+  const std::vector<FourSpheres> fours = in_fours(spheres);
   Vec3 center = box_center(spheres);
   Sphere best{center, std::numeric_limits<double>::infinity()};
   double step = kFirstStep;
   for (int k = 0; k < kSteps; ++k, step *= kShrink) {
-    const Farthest far = farthest(center, spheres);
+    const Farthest far = farthest(center, spheres, fours);
     if (far.distance < best.radius) best = {center, far.distance};
     center += step * (far.center - center);
   }

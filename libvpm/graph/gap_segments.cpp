@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/graph/four_spheres.h"
 
 namespace vpm {
 namespace {
@@ -49,11 +53,6 @@ EdgeSide side_of_edge(const std::vector<Vec3>& vertices, std::uint32_t from, std
 Vec3 LineLattice::to_uvw(Vec3 p) const {
   if (axis == 0) return {p.y, p.z, p.x};
   return axis == 1 ? Vec3{p.z, p.x, p.y} : p;
-}
-
-Vec3 LineLattice::to_xyz(Vec3 q) const {
-  if (axis == 0) return {q.z, q.x, q.y};
-  return axis == 1 ? Vec3{q.y, q.z, q.x} : q;
 }
 
 double LineLattice::u_of(std::uint32_t row, std::uint32_t column) const {
@@ -195,11 +194,96 @@ namespace {
 // Length, in spacings, below which a gap is rounding where a sphere touches another or the mesh.
 constexpr double kNegligible = 1e-6;
 
+// Rows of lines that a thread cuts one after the other, and places of each line, that share a list
+// of near spheres.
+constexpr std::uint32_t kTogether = 4;
+
+// Finds the spheres nearest to places of a few rows of lines. Places in one cell of the lattice, of
+// kTogether rows, columns and spacings, share a list of the spheres that can be nearest to any of
+// them, which one search of the tree finds. Belongs to one thread.
+class NearestSpheres {
+ public:
+  NearestSpheres(const LineLattice& lattice, const SphereBvh& bvh, double spacing)
+      : lattice_(lattice), bvh_(bvh), depth_(kTogether * spacing) {}
+
+  // Returns the sphere with the surface nearest to the place x, which lies at w on a line, the
+  // lowest of equal ones. `start` is a guess.
+  std::uint32_t nearest(std::uint32_t row, std::uint32_t column, double w, Vec3 x,
+                        std::uint32_t start) {
+    const Cell cell{row / kTogether, column / kTogether,
+                    static_cast<std::int64_t>(std::floor(w / depth_))};
+    if (last_ == nullptr || cell != last_cell_) {
+      const auto [place, is_new] = lists_.try_emplace(cell);
+      last_ = &place->second;
+      last_cell_ = cell;
+      if (is_new) fill(cell, start);
+    }
+    return last_->numbers.empty() ? bvh_.nearest_surface(x, start) : nearest_of(*last_, x);
+  }
+
+ private:
+  // Most spheres in a list, with which it is no slower than the tree.
+  static constexpr std::size_t kMost = 96;
+
+  struct Cell {
+    std::uint32_t row, column;  // in kTogether
+    std::int64_t depth;         // along the lines
+    friend auto operator<=>(const Cell&, const Cell&) = default;
+  };
+  struct List {
+    std::vector<std::uint32_t> numbers;
+    std::vector<FourSpheres> spheres;
+  };
+
+  // Fills the list of a cell with the spheres not farther from the middle of its places than the
+  // nearest is, by the way to its corner and back. Leaves the list empty if they are too many.
+  void fill(const Cell& cell, std::uint32_t start) {
+    constexpr double kHalf = 0.5 * kTogether;
+    const double u = lattice_.u0 + (kTogether * cell.column + kHalf - 0.5) * lattice_.du,
+                 v = lattice_.v0 + (kTogether * cell.row + kHalf) * lattice_.dv,
+                 w = (static_cast<double>(cell.depth) + 0.5) * depth_;
+    const Vec3 middle = lattice_.to_xyz({u, v, w});
+    const double reach = norm({kHalf * lattice_.du, kHalf * lattice_.dv, 0.5 * depth_});
+    const std::uint32_t nearest = bvh_.nearest_surface(middle, start);
+    const double farthest =
+        surface_distance(middle, bvh_.spheres()[nearest]) + 2 * reach + kBvhSlack;
+    std::vector<std::uint32_t> near;
+    bvh_.walk(
+        middle,
+        [&](std::uint32_t, double bound) { return bound <= farthest && near.size() <= kMost; },
+        [&](std::uint32_t i) {
+          if (surface_distance(middle, bvh_.spheres()[i]) <= farthest) near.push_back(i);
+        });
+    if (near.size() > kMost) return;
+    std::sort(near.begin(), near.end());
+    std::vector<Sphere> spheres;
+    for (const std::uint32_t i : near) spheres.push_back(bvh_.spheres()[i]);
+    *last_ = {std::move(near), in_fours(spheres)};
+  }
+
+  VPM_VECTOR_CLONES
+  static std::uint32_t nearest_of(const List& list, Vec3 x) {
+    const Vec3x4 place{x, x, x, x};
+    LeastOfFours nearest;
+    for (const FourSpheres& four : list.spheres)
+      nearest.add(square_root(squared_norm(place - four.centers())) - four.radii());
+    return list.numbers[nearest.first()];
+  }
+
+  const LineLattice& lattice_;
+  const SphereBvh& bvh_;
+  const double depth_;  // of a cell along the lines
+  std::map<Cell, List> lists_;
+  Cell last_cell_{};
+  List* last_ = nullptr;
+};
+
 // Cuts the lines of one row, from left to right.
 class RowCutter {
  public:
-  RowCutter(const LineLattice& lattice, const SphereBvh& bvh, double spacing, std::uint32_t row)
-      : lattice_(lattice), bvh_(bvh), spacing_(spacing), row_(row) {}
+  RowCutter(const LineLattice& lattice, const SphereBvh& bvh, NearestSpheres& nearest,
+            double spacing, std::uint32_t row)
+      : lattice_(lattice), bvh_(bvh), nearest_(nearest), spacing_(spacing), row_(row) {}
 
   std::vector<GapSegment> cut(const LatticeRows& rows) {
     const std::vector<MeshCrossing> crossings = rows.crossings(row_);
@@ -254,11 +338,11 @@ class RowCutter {
     const int pieces = static_cast<int>(std::ceil(length / spacing_));
     const double half = 0.5 * length / pieces;
     double begin = low, middle = low + half;
-    owner_ = bvh_.nearest_surface(point(column, middle), owner_);
+    owner_ = nearest_to(column, middle);
     for (int k = 1; k < pieces; ++k) {
       const std::uint32_t owner = owner_;
       const double next = low + length * ((k + 0.5) / pieces);
-      owner_ = bvh_.nearest_surface(point(column, next), owner);
+      owner_ = nearest_to(column, next);
       const double end =
           owner == owner_ ? 0.5 * (middle + next) : boundary(column, middle, owner, next, owner_);
       add_piece(column, begin, end, owner);
@@ -286,12 +370,16 @@ class RowCutter {
     if (length > 0) segments_.push_back({point(column, 0.5 * (begin + end)), length, sphere});
   }
 
+  std::uint32_t nearest_to(std::uint32_t column, double w) {
+    return nearest_.nearest(row_, column, w, point(column, w), owner_);
+  }
   Vec3 point(std::uint32_t column, double w) const {
     return lattice_.to_xyz({lattice_.u_of(row_, column), lattice_.v_of(row_), w});
   }
 
   const LineLattice& lattice_;
   const SphereBvh& bvh_;
+  NearestSpheres& nearest_;
   const double spacing_;
   const std::uint32_t row_;
   std::uint32_t owner_ = 0;  // sphere at which the next search starts
@@ -300,21 +388,17 @@ class RowCutter {
 
 }  // namespace
 
-Vec3 GapSegments::half_extent(const GapSegment& segment) const {
-  LineLattice lattice;
-  lattice.axis = axis;
-  return lattice.to_xyz(0.5 * Vec3{column, row, double{segment.length}});
-}
-
 GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double spacing) {
   const LineLattice lattice = make_line_lattice(solid, spacing);
   const LatticeRows rows(lattice, solid, bvh.spheres());
   // Lengthens segments with the lines' spacing, where that was increased to limit their number.
   const double length = std::max({spacing, lattice.du, lattice.dv});
   std::vector<std::vector<GapSegment>> of_row(lattice.rows);
-  parallel_for(lattice.rows, 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(lattice.rows, kTogether, [&](std::size_t begin, std::size_t end) {
+    NearestSpheres nearest(lattice, bvh, length);
     for (std::size_t row = begin; row < end; ++row) {
-      of_row[row] = RowCutter(lattice, bvh, length, static_cast<std::uint32_t>(row)).cut(rows);
+      of_row[row] =
+          RowCutter(lattice, bvh, nearest, length, static_cast<std::uint32_t>(row)).cut(rows);
     }
   });
   GapSegments gap{lattice.axis, lattice.dv, lattice.du, {}};

@@ -16,6 +16,12 @@
 
 namespace vpm {
 
+// Returns the vector whose part along `axis` is w, and whose u and v follow cyclically.
+inline Vec3 from_uvw(int axis, Vec3 q) {
+  if (axis == 0) return {q.z, q.x, q.y};
+  return axis == 1 ? Vec3{q.y, q.z, q.x} : q;
+}
+
 // Lattice of parallel lines: w along them, u from column to column, v from row to row.
 struct LineLattice {
   int axis = 2;  // axis of w; u and v follow cyclically
@@ -23,7 +29,7 @@ struct LineLattice {
   std::uint32_t columns = 0, rows = 0;
 
   Vec3 to_uvw(Vec3 p) const;
-  Vec3 to_xyz(Vec3 uvw) const;
+  Vec3 to_xyz(Vec3 uvw) const { return from_uvw(axis, uvw); }
   double v_of(std::uint32_t row) const { return v0 + (row + 0.5) * dv; }
   double u_of(std::uint32_t row, std::uint32_t column) const;
   // Stores the half-open range of columns whose lines may lie in [low, high]; never too short.
@@ -82,7 +88,9 @@ struct GapSegments {
   std::vector<GapSegment> segments;
 
   // Returns half the edge lengths of the prism that a segment stands for.
-  Vec3 half_extent(const GapSegment& segment) const;
+  Vec3 half_extent(const GapSegment& segment) const {
+    return from_uvw(axis, 0.5 * Vec3{column, row, double{segment.length}});
+  }
   double volume(const GapSegment& segment) const { return row * column * double{segment.length}; }
 };
 
