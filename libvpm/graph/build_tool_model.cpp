@@ -1,7 +1,6 @@
 #include "libvpm/graph/build_tool_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "libvpm/graph/point_location_grid.h"
 #include "libvpm/graph/sphere_graph.h"
 #include "libvpm/mesh/outer_surface.h"
+#include "libvpm/mesh/topology.h"
 #include "libvpm/mesh/weld.h"
 
 namespace vpm {
@@ -61,25 +61,15 @@ Normalized normalize(const Packing& packing, const MassProperties& mass) {
 
 // Returns the number of edges that a triangle has in one direction and none in the other.
 std::size_t count_open_edges(const Solid& solid) {
-  std::vector<std::array<std::uint32_t, 3>>
-      edges;  // ends in ascending order, and 1 if they were not
-  for (const Triangle& t : solid.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), a > b ? 1U : 0U});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
+  const std::vector<TriangleSide> sides = sorted_sides(solid.vertices.size(), solid.triangles);
   std::size_t open = 0;
-  for (std::size_t begin = 0; begin < edges.size();) {
-    std::size_t end = begin;
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     std::int64_t balance = 0;
-    for (;
-         end < edges.size() && edges[end][0] == edges[begin][0] && edges[end][1] == edges[begin][1];
+    for (; end < sides.size() && sides[end].low == sides[begin].low &&
+           sides[end].high == sides[begin].high;
          ++end)
-      balance += edges[end][2] == 1 ? 1 : -1;
+      balance += sides[end].forward ? 1 : -1;
     open += static_cast<std::size_t>(std::abs(balance));
-    begin = end;
   }
   return open;
 }

@@ -306,10 +306,8 @@ class Check {
           first_place(topology_.pinched, vertex_place));
     }
     if (defects.empty()) return;
-    if (topology_.duplicate_triangles > 0) {
-      add(counted(topology_.duplicate_triangles, "triangle is", "triangles are") +
-          " listed more than once");
-    }
+    if (const std::size_t repeated = count_duplicates(triangles()))
+      add(counted(repeated, "triangle is", "triangles are") + " listed more than once");
     refuse(defects, mesh_.name, advice());
   }
 

@@ -210,7 +210,8 @@ OverlapTree::OverlapTree(const std::vector<Item>& items) {
   }
 }
 
-// Tests the fifteen directions that can separate two boxes.
+// Tests the six directions of the boxes' faces. Those across an edge of each would part a few more
+// pairs of boxes, at three times the cost.
 bool OverlapTree::meet(const Oriented& a, const Oriented& b) {
   const Vec3 between = b.center - a.center;
   const auto reach = [](const Oriented& box, Vec3 d) {
@@ -220,11 +221,6 @@ bool OverlapTree::meet(const Oriented& a, const Oriented& b) {
   const auto apart = [&](Vec3 d) { return std::abs(dot(between, d)) > reach(a, d) + reach(b, d); };
   for (std::size_t k = 0; k < 3; ++k) {
     if (apart(a.axis[k]) || apart(b.axis[k])) return false;
-  }
-  for (const Vec3& u : a.axis) {
-    for (const Vec3& v : b.axis) {
-      if (apart(cross(u, v))) return false;
-    }
   }
   return true;
 }

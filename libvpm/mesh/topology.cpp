@@ -9,30 +9,6 @@ namespace {
 
 constexpr std::uint32_t kNone = Topology::kNone;
 
-// Side of a triangle from corner k to corner k + 1.
-struct Side {
-  std::uint32_t low, high;  // vertices
-  std::uint32_t triangle;
-  std::uint32_t corner;
-  bool forward;  // runs from low to high
-};
-
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle, a.corner) <
-           std::tie(b.low, b.high, b.triangle, b.corner);
-  });
-  return sides;
-}
-
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -86,6 +62,35 @@ std::vector<std::uint32_t> find_pinched(std::size_t vertex_count,
   return pinched;
 }
 
+}  // namespace
+
+// Sorts by the lower vertex with a count of each, and then the few sides of each vertex.
+std::vector<TriangleSide> sorted_sides(std::size_t vertex_count,
+                                       const std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> next(vertex_count + 1, 0);
+  const auto for_sides = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+        visit({std::min(from, to), std::max(from, to), t, k, from < to});
+      }
+    }
+  };
+  for_sides([&](const TriangleSide& side) { ++next[side.low + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<TriangleSide> sides(3 * triangles.size());
+  for_sides([&](const TriangleSide& side) { sides[next[side.low]++] = side; });
+  auto begin = sides.begin();
+  for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
+    const auto end = sides.begin() + next[vertex];
+    std::sort(begin, end, [](const TriangleSide& a, const TriangleSide& b) {
+      return std::tie(a.high, a.triangle, a.corner) < std::tie(b.high, b.triangle, b.corner);
+    });
+    begin = end;
+  }
+  return sides;
+}
+
 std::size_t count_duplicates(std::vector<Triangle> triangles) {
   for (Triangle& t : triangles) std::sort(t.begin(), t.end());
   std::sort(triangles.begin(), triangles.end());
@@ -93,21 +98,19 @@ std::size_t count_duplicates(std::vector<Triangle> triangles) {
   return static_cast<std::size_t>(triangles.end() - last);
 }
 
-}  // namespace
-
 Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
   Topology topology;
   topology.neighbor.assign(triangles.size(), {kNone, kNone, kNone});
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<TriangleSide> sides = sorted_sides(vertex_count, triangles);
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    const Side& first = sides[begin];
+    const TriangleSide& first = sides[begin];
     while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high)
       ++end;
     const Edge edge{first.low, first.high};
     if (end - begin == 1) topology.boundary.push_back(edge);
     if (end - begin > 2) topology.non_manifold.push_back(edge);
     if (end - begin != 2) continue;
-    const Side& second = sides[begin + 1];
+    const TriangleSide& second = sides[begin + 1];
     if (first.forward == second.forward) topology.conflicting.push_back(edge);
     topology.neighbor[first.triangle][first.corner] = second.triangle;
     topology.neighbor[second.triangle][second.corner] = first.triangle;
@@ -115,7 +118,6 @@ Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& tria
   // Fans fall apart at non-manifold edges too, so pinched vertices matter only without those.
   if (topology.non_manifold.empty())
     topology.pinched = find_pinched(vertex_count, triangles, topology);
-  topology.duplicate_triangles = count_duplicates(triangles);
   return topology;
 }
 

@@ -15,12 +15,26 @@ struct Edge {
   std::uint32_t a = 0, b = 0;  // vertices, a < b
 };
 
+// Side of a triangle from corner k to k + 1.
+struct TriangleSide {
+  std::uint32_t low = 0, high = 0;  // vertices
+  std::uint32_t triangle = 0, corner = 0;
+  bool forward = false;  // runs from low to high
+};
+
+// Returns the sides of all triangles, those of one edge together, by their vertices, then by
+// triangle and corner.
+std::vector<TriangleSide> sorted_sides(std::size_t vertex_count,
+                                       const std::vector<Triangle>& triangles);
+
+// Returns the number of triangles with the vertices of an earlier one.
+std::size_t count_duplicates(std::vector<Triangle> triangles);
+
 struct Topology {
-  std::vector<Edge> boundary;           // edges of one triangle
-  std::vector<Edge> non_manifold;       // edges of more than two triangles
-  std::vector<Edge> conflicting;        // edges that both triangles run in the same direction
-  std::vector<std::uint32_t> pinched;   // vertices where several fans of triangles meet
-  std::size_t duplicate_triangles = 0;  // triangles with the vertices of an earlier one
+  std::vector<Edge> boundary;          // edges of one triangle
+  std::vector<Edge> non_manifold;      // edges of more than two triangles
+  std::vector<Edge> conflicting;       // edges that both triangles run in the same direction
+  std::vector<std::uint32_t> pinched;  // vertices where several fans of triangles meet
   // Triangle beyond the edge from corner k to k + 1, or kNone.
   std::vector<std::array<std::uint32_t, 3>> neighbor;
   static constexpr std::uint32_t kNone = 0xffffffff;

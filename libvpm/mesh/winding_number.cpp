@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "libvpm/core/parallel.h"
 #include "libvpm/core/solid_angle.h"
 
 namespace vpm {
@@ -46,7 +47,7 @@ WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * b
       }
     }
   }
-  for (std::size_t i = 0; i < dipoles_.size(); ++i) {
+  const auto fill = [&](std::size_t i) {
     Group group;
     for (std::uint32_t t = range[i][0]; t < range[i][1]; ++t) {
       const TriangleBvh::Corners& c = bvh.corners()[t];
@@ -59,7 +60,7 @@ WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * b
            3.0);
       group.weight += weight;
     }
-    if (range[i][0] == range[i][1]) continue;
+    if (range[i][0] == range[i][1]) return;
     Dipole& dipole = dipoles_[i];
     dipole.area = group.area;
     dipole.center =
@@ -72,7 +73,11 @@ WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * b
         radius2 = std::max(radius2, squared_norm(p - dipole.center));
     }
     dipole.far2 = kFarFactor * kFarFactor * radius2;
-  }
+  };
+  constexpr std::size_t kTogether = 1024;
+  parallel_for(dipoles_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) fill(i);
+  });
 }
 
 template <class Counts>
