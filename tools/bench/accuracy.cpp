@@ -42,6 +42,7 @@ class Accuracy {
  public:
   explicit Accuracy(const SuiteOptions& options)
       : options_(options),
+        places_(options.quick ? PackedSolid::kFewPlaces : kCountedPlaces),
         sweeps_([&](const std::string& shape) -> const PackedSolid& { return tool(shape); },
                 options.noise_seed, options.shadows, options.device, report_) {
     report_.suite = "accuracy";
@@ -55,6 +56,7 @@ class Accuracy {
 
   Report run_only_intervals() {
     report_.suite = "intervals";
+    places_ = std::min(places_, kPlacesOfIntervals);
     levels_ = {options_.quick ? 250u : 1000u};
     steps_ = 1;
     run_intervals();
@@ -104,10 +106,7 @@ class Accuracy {
   const PackedSolid& tool(const std::string& shape) {
     const auto found = tools_.find(shape);
     if (found != tools_.end()) return found->second;
-    return tools_
-        .try_emplace(shape, make_packed(shape, levels_,
-                                        options_.quick ? PackedSolid::kFewPlaces : kCountedPlaces))
-        .first->second;
+    return tools_.try_emplace(shape, make_packed(shape, levels_, places_)).first->second;
   }
 
   void step() {
@@ -316,6 +315,7 @@ class Accuracy {
   }
 
   const SuiteOptions& options_;
+  std::size_t places_;  // counted in each tool
   std::vector<std::uint32_t> levels_;
   std::map<std::string, PackedSolid> tools_;
   Report report_;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::uint64_t kPoseSeed = 31;
 constexpr double kLeastInside = 1e-4;     // of the tool
-constexpr std::size_t kPlaces = 65536;    // of a tool, that tell what no camera can know
 constexpr double kTruthTolerance = 1e-5;  // of the tool's volume: a fiftieth of an interval
 // Parts of the truths that intervals must hold: of all, and of each scene seen in one way.
 constexpr double kLeastOfAll = 0.93, kMostOfAll = 0.995, kLeastOfEach = 0.88;
@@ -62,11 +61,17 @@ class CoverageOfView {
     const double whole = tool.solid.mass().volume, part = truth / whole;
     const Result result = queries_[k].run(view_.cloud, pose);
     const Interval interval = result.volume_interval.value();
-    const auto places = std::span(tool.places).first(std::min(kPlaces, tool.places.size()));
-    const Unseen unseen = unseen_parts(places, pose, *scene_.surface, sights_);
+    const auto holds = [&](const Unseen& unseen) {
+      return interval.low <= (part + unseen.free) * whole &&
+             interval.high >= (part - unseen.inside) * whole;
+    };
+    // What no camera can know takes long to count, and matters only where the truth is outside.
+    const auto places =
+        std::span(tool.places).first(std::min(kPlacesOfIntervals, tool.places.size()));
+    const Unseen unseen =
+        holds({}) ? Unseen{} : unseen_parts(places, pose, *scene_.surface, sights_);
     ++coverage.poses;
-    coverage.inside += interval.low <= (part + unseen.free) * whole &&
-                       interval.high >= (part - unseen.inside) * whole;
+    coverage.inside += holds(unseen);
     coverage.widths += (interval.high - interval.low) / whole;
     coverage.errors += volume_error(result.volume / whole, part, unseen);
   }

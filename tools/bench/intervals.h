@@ -1,6 +1,7 @@
 // How often the truth lies in the interval that a query tells.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "tools/bench/report.h"
 
 namespace vpm::bench {
+
+// Number of places of a tool that tell what no camera can know.
+inline constexpr std::size_t kPlacesOfIntervals = 65536;
 
 // Asks random poses of the tools, at which the surface cuts them, in six scenes, of an image and of
 // points, clean and with noise: `poses` in each, those with noise of so many `images`. Adds a
