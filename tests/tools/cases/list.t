@@ -47,16 +47,16 @@ $ for k in 1 2 3 4; do vpm-query --list clouds.txt --tool cube.vpmg --poses pose
        1       0       1       0       0 * (glob)
 $ bash query.sh --force --quiet && diff -r results parts
 
-# A run that is killed: the same command goes on, and all files have the bytes of a run that was not, notes of what is done too.
-$ for k in $(seq 60); do echo "{\"cloud\":\"clouds/a/frame-00000$((k % 3)).depth.vpmc\",\"output\":\"OUT/$k.jsonl\"}"; done > every.txt; seq -f '%g 0 0 0.9 0 0 0 1' 100 > path.txt
-$ echo 'sed s/OUT/$1/ every.txt > $1.txt; exec vpm-query --list $1.txt --tool cube.vpmg --poses path.txt -o $1 --jobs 2' > many.sh; bash many.sh many | sed 1d
+# A run that is killed: the same command goes on, and all files have the bytes of a run that was not, notes of what is done too. It is killed where it waits for two pipes.
+$ for k in $(seq 60); do p=path.txt; [ $k = 31 ] && p=one.txt; [ $k = 32 ] && p=two.txt; echo "{\"cloud\":\"clouds/a/frame-00000$((k % 3)).depth.vpmc\",\"output\":\"OUT/$k.jsonl\",\"poses\":\"$p\"}"; done > every.txt; seq -f '%g 0 0 0.9 0 0 0 1' 100 | tee path.txt one.txt > two.txt
+$ echo 'sed s/OUT/$1/ every.txt > $1.txt; exec vpm-query --list $1.txt --tool cube.vpmg -o $1 --jobs 2' > many.sh; bash many.sh many | sed 1d
       60       0      60       0       0 * (glob)
-$ done_of() { ls -A $1 2>&- | grep -c '^[.].*[.]done$'; }; bash many.sh cut & for k in $(seq 3000); do [ "$(done_of cut)" -ge 5 ] && break; sleep 0.01; done; kill -KILL $!; wait $! 2>&-; n=$(done_of cut); [ $n -ge 5 ] && [ $n -lt 60 ] || echo $n
-$ sleep 0.3; bash many.sh cut > said; tail -n 1 said | awk '{ print $1, ($2 >= 3), $2 + $3, $4, $5 }'; diff -r cut many
+$ rm one.txt two.txt; mkfifo one.txt two.txt ended; done_of() { ls -A $1 2>&- | grep -c '^[.].*[.]done$'; }; cat ended & all=$!; bash many.sh cut 8> ended & for k in $(seq 3000); do [ "$(done_of cut)" -ge 5 ] && break; sleep 0.01; done; kill -KILL $!; wait $! 2>&-; wait $all; n=$(done_of cut); [ $n -ge 5 ] && [ $n -le 30 ] || echo $n
+$ rm one.txt two.txt; tee one.txt two.txt < path.txt > again.txt; bash many.sh cut > said; tail -n 1 said | awk '{ print $1, ($2 >= 3), $2 + $3, $4, $5 }'; diff -r cut many
 60 1 60 0 0
 
-# Runs at a time are spread over the GPUs that are to be seen, here two that no machine has.
-$ CUDA_VISIBLE_DEVICES=vpm-a,vpm-b bash many.sh gpus > said & for k in $(seq 3000); do cat /proc/[0-9]*/environ 2>&- | tr '\0' '\n' | grep -x 'CUDA_VISIBLE_DEVICES=vpm-[ab]' >> seen; [ $(sort -u seen | wc -l) -eq 2 ] && break; done; wait; sort -u seen; diff -r gpus many
+# Runs at a time are spread over the GPUs that are to be seen, here two that no machine has. Both wait for pipes until they were seen.
+$ rm one.txt two.txt; mkfifo one.txt two.txt; CUDA_VISIBLE_DEVICES=vpm-a,vpm-b bash many.sh gpus > said & for k in $(seq 3000); do cat /proc/[0-9]*/environ 2>&- | tr '\0' '\n' | grep -x 'CUDA_VISIBLE_DEVICES=vpm-[ab]' >> seen; [ $(sort -u seen | wc -l) -eq 2 ] && break; done; cat path.txt > one.txt; cat path.txt > two.txt; wait; sort -u seen; diff -r -x '.*' gpus many
 CUDA_VISIBLE_DEVICES=vpm-a
 CUDA_VISIBLE_DEVICES=vpm-b
 
