@@ -29,9 +29,9 @@ cut.csv
 cut.jsonl
 
 # A run that is killed; the clock changes no result.
-$ printf '%s\n' '0 0 0 0.95 0 0 0 1' '1 0 0 0.95 0 0 0 1' > path.txt; echo 'exec vpm-query --tool cube.vpmg --frames steps --trajectory path.txt --intrinsics 60,60,31.5,23.5 --rate 100 --quiet "$@"' > replay.sh
+$ printf '%s\n' '0 0 0 0.95 0 0 0 1' '20 0 0 0.95 0 0 0 1' > path.txt; echo 'exec vpm-query --tool cube.vpmg --frames steps --trajectory path.txt --intrinsics 60,60,31.5,23.5 --rate 100 --quiet "$@"' > replay.sh
 $ bash replay.sh > steps.jsonl; wc -l < steps.jsonl
-101
+2001
 $ bash replay.sh --realtime -o killed.jsonl & for k in $(seq 3000); do [ "$(cat killed.jsonl.part 2>&- | wc -l)" -ge 5 ] && break; sleep 0.01; done; kill -KILL $!; wait $! 2>&-; ls killed.*
 killed.jsonl.part
 killed.jsonl.part.json
