@@ -69,6 +69,17 @@ def bounds(report):
     return text
 
 
+def intervals(report):
+    ways = [(cloud, noise) for cloud in ("camera", "points") for noise in NOISE]
+    of = {(r["scene"], r["cloud"], r["noise"]): r for r in report["results"] if r["group"] == "intervals"}
+    cell = lambda r: f"{100 * r['inside']:.0f} / {percent(r['width_mean'])}" if r else ""
+    poses = sum(r["poses"] for r in of.values())
+    inside = sum(r["inside"] * r["poses"] for r in of.values()) / poses
+    return (table(["scene: truths held / mean width, %"] + [f"{cloud}, {NOISE[noise]}" for cloud, noise in ways],
+                  [[scene] + [cell(of.get((scene, *way))) for way in ways] for scene in dict.fromkeys(scene for scene, *_ in of)])
+            + f"\n\nAll: {percent(inside, 1)} % of {thousands(poses)} truths held.")
+
+
 def tradeoff(report):
     rows = [r for r in report["results"] if r["varied"] == "spheres"]
     knee = report["settings"]["knee"]
@@ -477,7 +488,7 @@ def fuzz(report):
 PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "packing", "cuda")},
          "tests/results/README.md": {
              "accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
-             "bounds solid": (bounds, "accuracy_solid"),
+             "bounds solid": (bounds, "accuracy_solid"), "intervals": (intervals, "intervals"),
              "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
              "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),

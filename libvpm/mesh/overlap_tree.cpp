@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libvpm/core/parallel.h"
+
 namespace vpm {
 namespace {
 
@@ -132,9 +134,22 @@ struct OverlapTree::Build {
         if (tree.nodes_[child].family != node.family) node.family = kNone;
       }
     }
-    if (node.end - node.begin > kOrientedItems) return;
-    node.oriented = static_cast<std::uint32_t>(tree.oriented_.size());
-    tree.oriented_.push_back(oriented_box(node.begin, node.end));
+  }
+
+  // Gives groups of few items their oriented boxes.
+  void orient() {
+    std::vector<std::array<std::uint32_t, 2>> groups;  // first item, end
+    for (Node& node : tree.nodes_) {
+      if (node.end - node.begin > kOrientedItems) continue;
+      node.oriented = static_cast<std::uint32_t>(groups.size());
+      groups.push_back({node.begin, node.end});
+    }
+    tree.oriented_.resize(groups.size());
+    constexpr std::size_t kTogether = 256;
+    parallel_for(groups.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        tree.oriented_[k] = oriented_box(groups[k][0], groups[k][1]);
+    });
   }
 
   // Returns the point of [begin, end) for which `measure` is largest.
@@ -202,6 +217,7 @@ OverlapTree::OverlapTree(const std::vector<Item>& items) {
   nodes_.reserve(items.size());
   const std::vector<std::size_t> ends = build.sort_families();
   build.node_over(ends, 0, ends.size());
+  build.orient();
   places_.reserve(items.size());
   for (const Build::Sorted& s : build.order)
     places_.push_back({box_of(items[s.item]), s.item, items[s.item].family});

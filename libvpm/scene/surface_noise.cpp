@@ -63,8 +63,9 @@ void NoiseSum<DiskSurface>::add(const SurfaceSample& at, double area) {
   double sum = 0;
   std::uint32_t count = 0;
   surface_.feet.for_points_in_ball(at.foot, reach * reach, [&](std::uint32_t i) {
-    const double height = dot(widen(surface_.normals[i]),
-                              widen(surface_.measured[i]) - widen(surface_.feet.points[i]));
+    const Vec3 normal = widen(surface_.normals[i]);
+    if (dot(normal, at.normal) <= 0) return true;  // of the other side of a thin plate
+    const double height = dot(normal, widen(surface_.measured[i]) - widen(surface_.feet.points[i]));
     sum += height * height;
     ++count;
     return true;

@@ -199,7 +199,8 @@ void run_recording(const Program& program, const Arguments& a) {
   if (recording.has_clock) write_times(a.output, recording, names);
   if (recording.missing > 0)
     program.warn(std::to_string(recording.missing) + " frames of " + a.depth + " are missing");
-  program.note(std::to_string(writer.written()) + " clouds are in " + a.output +
+  program.note(std::to_string(writer.written()) +
+               (writer.written() == 1 ? " cloud is in " : " clouds are in ") + a.output +
                (writer.unusable() > 0
                     ? ", and " + std::to_string(writer.unusable()) + " frames could not be used"
                     : ""));

@@ -51,9 +51,12 @@ class VarianceSum {
     const Vec3 center = work_.to_surface * widen(block.center);
     const SurfaceSample at = work_.surface.sample(center);
     if (!at.known || !(std::fabs(at.distance) < double{block.radius})) return;
-    const double area = area_of(cell, block, {{at.normal, at.foot}, work_.to_surface});
+    const double area = add_noise(cell, block, at);
     if (!(area > 0)) return;
-    noise_.add(at, area);
+    // The other side of a plate or slot errs by itself.
+    if constexpr (requires { work_.surface.other_side(at); })
+      if (const std::optional<TangentPlane> back = work_.surface.other_side(at))
+        add_noise(cell, block, {true, back->distance(center), back->normal, back->foot, at.point});
     TangentPlane mean;
     if (!mean_of_five(work_.surface, center, double{block.radius}, 0, SampleTogether{}, mean))
       return;
@@ -65,6 +68,12 @@ class VarianceSum {
     const double off = area * -classified.plane.distance(mean.foot);
     off_planes_ += off;
     squared_off_planes_ += off * off;
+  }
+  // Adds the noise of the surface where its plane at a sample cuts a block. Returns that area, m^2.
+  double add_noise(const CellView& cell, const CellBlock& block, const SurfaceSample& at) {
+    const double area = area_of(cell, block, {{at.normal, at.foot}, work_.to_surface});
+    if (area > 0) noise_.add(at, area);
+    return area;
   }
   // Returns the area, m^2, in which a plane cuts a block's samples, and notes these.
   double area_of(const CellView& cell, const CellBlock& block, const ClipPlane& plane) {

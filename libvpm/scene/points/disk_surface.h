@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -123,6 +124,14 @@ struct DiskSurface {
     const double aside_squared = squared_norm(aside), rim = rim_of(on_surface.point);
     if (height > 0 && aside_squared <= rim * rim) return on_surface.normal;
     return normalized_or_zero(towards - (rim / std::sqrt(aside_squared)) * aside);
+  }
+
+  // Returns the plane of the other side of a plate or slot, if the sampled disk knows it.
+  std::optional<TangentPlane> other_side(const SurfaceSample& sampled) const {
+    if (!knows_second(sampled.point)) return std::nullopt;
+    const TangentPlane own = plane_of(sampled.point), second = second_at(sampled.point).plane();
+    if (dot(own.normal, second.normal) > kSlot) return std::nullopt;
+    return dot(own.normal, sampled.normal) > 0 ? second : own;
   }
 
   // Calls visit(normal) for each plane that a disk knows.
