@@ -117,6 +117,34 @@ TEST_F(Intervals, HoldTheTruthBehindANoisyWall) {
   }
 }
 
+// Both sides of a plate are so near that the disks about a place are of both, and each errs by
+// itself.
+TEST_F(Intervals, HoldTheTruthAtAThinPlateOfPoints) {
+  constexpr double kNoise = .001, kThickness = .004;  // m
+  Camera behind = camera_at({0, 0, 2 + kThickness});
+  behind.to_world.rotation = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  Coverage coverage;
+  for (std::uint64_t draw = 0; draw < 40; ++draw) {
+    const auto wall = [&](std::uint64_t side) {
+      return MeasuredWall{0, [=](double depth, std::uint64_t pixel) {
+                            synthetic::NormalNumbers numbers(2 * draw + side + 1, pixel);
+                            return depth + kNoise * numbers.next();
+                          }};
+    };
+    Cloud plate = without_camera(wall(0).seen_by(camera_at({})));
+    const Cloud back = wall(1).seen_by(camera_at({}), behind);
+    for (const Vec3f& place : back.positions)
+      plate.positions.push_back(narrow(widen(place) + back.origin - plate.origin));
+    plate.normals.insert(plate.normals.end(), back.normals.begin(), back.normals.end());
+    plate.radii.insert(plate.radii.end(), back.radii.begin(), back.radii.end());
+    const Pose pose{generic_rotation(), {.02, -.01, .97 + 1e-3 * static_cast<double>(draw)}};
+    Pose further = pose;
+    further.translation.z -= kThickness;
+    coverage.add(query_.run(AnyBody(plate), pose), truth(wall(0), pose) - truth(wall(0), further));
+  }
+  coverage.expect_95();
+}
+
 // A camera that is not where its pose says errs alike over all of the tool, and no mean over pixels
 // takes that away; only another camera, which disagrees, can tell.
 TEST_F(Intervals, HoldTheTruthBetweenCamerasThatDisagree) {

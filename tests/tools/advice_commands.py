@@ -170,6 +170,8 @@ COMMANDS = [
      "{0} small.off -o - --spheres 5 | vpm-graph - -o out.vpmg"),
     ("vpm-query --tool cube.vpmp --cloud wall.vpmc --poses poses.txt", "needed is a tool model .*, which (vpm-graph) writes",
      "{0} cube.vpmp -o - | vpm-query --tool - --cloud wall.vpmc --poses poses.txt", WALL),
+    (f"vpm-query --tool small.vpmg --cloud wall.vpmc --pose {POSE.replace(',', ' ')}", "give them as one word: (--pose [-0-9.,]+)",
+     "vpm-query --tool small.vpmg --cloud wall.vpmc {0}", WALL),
     ("vpm-query --tool small.vpmg --cloud wall.pgm --poses poses.txt", "needed is a cloud .*, which (vpm-normals) writes",
      f"{{0}} wall.pgm {CAMERA} -o - | vpm-query --tool small.vpmg --cloud - --poses poses.txt", WALL),
     ("vpm-normals wall.vpmc -o out.vpmc", "it is ready for (vpm-query)",

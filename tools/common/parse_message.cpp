@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libvpm/file/text.h"
 #include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
@@ -29,6 +30,24 @@ std::string unknown_option(const CLI::App& app, const std::string& what) {
   const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
   const std::string best = nearest_option(app, given);
   return best.empty() ? what : "there is no option " + given + "; is " + best + " meant?";
+}
+
+// Returns the message of an option, such as --pose, whose numbers are words of their own; empty if
+// there is none.
+std::string numbers_apart(const CLI::App& app, std::span<const char* const> arguments) {
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string name = arguments[k];
+    const CLI::Option* const option =
+        name.starts_with("--") ? app.get_option_no_throw(name) : nullptr;
+    if (option == nullptr || option->get_type_name() != "TEXT") continue;
+    std::string joined;
+    std::size_t end = k + 1;
+    for (; end < arguments.size() && file::to_number(arguments[end]); ++end)
+      joined += (joined.empty() ? "" : ",") + std::string(arguments[end]);
+    if (end > k + 2)
+      return name + " has its numbers apart; give them as one word: " + name + " " + joined;
+  }
+  return "";
 }
 
 // Returns the message of an option of one value that has several, in CLI11's words "--scale: At
@@ -99,7 +118,10 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& fault, const 
     }
     return "--config " + config + ": " + what;
   }
-  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return unknown_option(app, what);
+  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) {
+    const std::string apart = numbers_apart(app, arguments);
+    return apart.empty() ? unknown_option(app, what) : apart;
+  }
   if (what.rfind(kUnknownKey, 0) != 0) {
     what = refused_value(app, fault);
     return source_of(app, what, config, arguments) + what;
