@@ -39,7 +39,8 @@ std::string numbers_apart(const CLI::App& app, std::span<const char* const> argu
     const std::string name = arguments[k];
     const CLI::Option* const option =
         name.starts_with("--") ? app.get_option_no_throw(name) : nullptr;
-    if (option == nullptr || option->get_type_name() != "TEXT") continue;
+    if (option == nullptr || option->get_multi_option_policy() != CLI::MultiOptionPolicy::Join)
+      continue;
     std::string joined;
     std::size_t end = k + 1;
     for (; end < arguments.size() && file::to_number(arguments[end]); ++end)
