@@ -77,7 +77,7 @@ def intervals(report):
     inside = sum(r["inside"] * r["poses"] for r in of.values()) / poses
     return (table(["scene: truths held / mean width, %"] + [f"{cloud}, {NOISE[noise]}" for cloud, noise in ways],
                   [[scene] + [cell(of.get((scene, *way))) for way in ways] for scene in dict.fromkeys(scene for scene, *_ in of)])
-            + f"\n\nAll: {percent(inside, 1)} % of {thousands(poses)} truths held.")
+            + f"\n\nAll: {percent(inside, 1)} % of {thousands(poses)} truths held. {bounds(report)}")
 
 
 def tradeoff(report):
