@@ -76,7 +76,7 @@ class Intervals : public ::testing::Test {
   // Returns the volume of the tool behind the wall, by planes through its spheres' cells: the cube
   // is cut as a polyhedron is, sum over its faces.
   double truth(const MeasuredWall& wall, const Pose& pose) const {
-    constexpr int kPlaces = 400;           // lines across two of the tool's axes, each cut exactly
+    constexpr int kPlaces = 200;           // lines across two of the tool's axes, each cut exactly
     const Vec3 normal{-wall.slope, 0, 1};  // not of unit length: z - slope x - 1 is 0 on the wall
     const Vec3 axis = transpose(pose.rotation) * normal;
     double sum = 0;
