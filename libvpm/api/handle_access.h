@@ -33,13 +33,17 @@ struct HandleAccess {
     return held_by(scene.solids_, "Scene");
   }
   static const ToolModel& held(const Tool& tool) { return held_by(tool.model_, "Tool"); }
+  static const std::shared_ptr<const ToolModel>& shared(const Tool& tool) { return tool.model_; }
   static const CheckedSolid& held(const SolidMesh& mesh) {
     return held_by(mesh.solid_, "SolidMesh");
   }
-  // Returns the surface that a body shares.
+  // Returns the surface that a body shares, and the model, which is null for a mesh.
   static const std::shared_ptr<const SolidSurface>& shared(const SolidBody& body) {
     held_by(body.surface_, "SolidBody");
     return body.surface_;
+  }
+  static const std::shared_ptr<const ToolModel>& model(const SolidBody& body) {
+    return body.model_;
   }
   static const Packing& held(const SpherePacking& packing) {
     return held_by(packing.packing_, "SpherePacking");

@@ -46,7 +46,8 @@ void complete(std::vector<Contact>& contacts, const Overlap& whole) {
 }  // namespace
 
 SolidBody::SolidBody(const Tool& tool, bool with_force)
-    : surface_(prepared_surface(HandleAccess::held(tool), with_force)) {}
+    : surface_(prepared_surface(HandleAccess::held(tool), with_force)),
+      model_(HandleAccess::shared(tool)) {}
 
 double SolidBody::volume() const {
   return HandleAccess::shared(*this)->volume();

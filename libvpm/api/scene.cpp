@@ -77,8 +77,8 @@ Body::Body(const PointCloud& cloud, Denoising points)
     : body_(std::make_shared<const AnyBody>(HandleAccess::held(cloud), points)) {}
 
 Body::Body(const SolidBody& solid, const Pose& to_world)
-    : solid_(std::make_shared<const PlacedSolid>(
-          PlacedSolid{HandleAccess::shared(solid), exact_pose(to_world), 0})) {
+    : solid_(std::make_shared<const PlacedSolid>(PlacedSolid{
+          HandleAccess::shared(solid), exact_pose(to_world), 0, HandleAccess::model(solid)})) {
   if (!solid_->surface->has_depth())
     throw Error(ErrorKind::invalid_argument, "a solid was made without what forces need", {},
                 "make it with `with_force`");
@@ -117,7 +117,7 @@ Scene::Scene(std::vector<Body> bodies) {
   std::vector<PlacedSolid> solids;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (const PlacedSolid* const solid = HandleAccess::solid_of(bodies[k]))
-      solids.push_back({solid->surface, solid->to_world, k});
+      solids.push_back({solid->surface, solid->to_world, k, solid->model});
     else
       list.push_back(HandleAccess::held(bodies[k]));  // throws if it was moved from
   }

@@ -16,6 +16,30 @@ void note_states(std::span<const Sphere> spheres, const Pose& pose, const SolidS
     states[k] = solid.state_of(to_solid * spheres[k].center, spheres[k].radius);
 }
 
+// Returns a solid's answer in the tool's axes and units, with the wrench about its centre of mass.
+BodySum sum_of(const SharedSolid& shared, const ToolModel& tool, const Pose& pose) {
+  BodySum body;
+  body.knows_all_space = true;
+  body.variance.emplace();
+  ToolSum& sum = body.sum;
+  sum.volume.add(std::min(shared.volume / tool.volume, 1.0));
+  if (sum.volume.value == 0) return body;
+  const Vec3 torque = shared.torque_about(pose * tool.center_of_mass);
+  const Rotation to_tool = transpose(pose.rotation);
+  const Vec3 f = (1 / tool.volume) * (to_tool * shared.force),
+             t = (1 / (tool.volume * tool.radius)) * (to_tool * torque);
+  sum.force[0].add(f.x), sum.force[1].add(f.y), sum.force[2].add(f.z);
+  sum.torque[0].add(t.x), sum.torque[1].add(t.y), sum.torque[2].add(t.z);
+  return body;
+}
+
+void count_states(std::span<const SphereState> states, BodySum& body) {
+  for (const SphereState state : states) {
+    body.boundary += state == SphereState::boundary;
+    body.inside += state == SphereState::inside;
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const SolidSurface> prepared_surface(const ToolModel& tool, bool with_depth) {
@@ -35,24 +59,6 @@ SolidPair& SolidQuery::pair_with(const PlacedSolid& solid, std::size_t k) {
   if (!pairs_[k] || pairs_[k]->other != solid.surface)
     pairs_[k].emplace(Pair{solid.surface, SolidPair(surface_, solid.surface)});
   return pairs_[k]->pair;
-}
-
-// Takes the wrench about the tool's centre of mass and into its axes.
-BodySum SolidQuery::sum_of(const SharedSolid& shared, const Pose& pose) const {
-  BodySum body;
-  body.knows_all_space = true;
-  body.variance.emplace();
-  ToolSum& sum = body.sum;
-  sum.volume.add(std::min(shared.volume / tool_.volume, 1.0));
-  if (sum.volume.value == 0) return body;
-  const Vec3 arm = shared.centroid - pose * tool_.center_of_mass;
-  const Vec3 torque = shared.torque + cross(arm, shared.force);
-  const Rotation to_tool = transpose(pose.rotation);
-  const Vec3 f = (1 / tool_.volume) * (to_tool * shared.force),
-             t = (1 / (tool_.volume * tool_.radius)) * (to_tool * torque);
-  sum.force[0].add(f.x), sum.force[1].add(f.y), sum.force[2].add(f.z);
-  sum.torque[0].add(t.x), sum.torque[1].add(t.y), sum.torque[2].add(t.z);
-  return body;
 }
 
 // Returns the contacts, with torques about the tool's centre of mass. Where rounding makes more
@@ -78,15 +84,22 @@ SolidAnswer SolidQuery::run(const SolidsAt& solids, std::size_t k, const Pose& p
   const PlacedSolid& solid = solids.solids[k];
   const Pose at = exact_pose(solids.pose(k));
   const SharedSolid shared = pair_with(solid, k).measure(pose, at, true, contacts);
-  SolidAnswer answer{sum_of(shared, pose), shared.closure, {}};
+  SolidAnswer answer{sum_of(shared, tool_, pose), shared.closure, {}};
   std::fill(states.begin(), states.end(), SphereState::outside);
   if (answer.body.sum.volume.value == 0) return answer;
   answer.contacts = patches_of(shared, pose, solid.place);
   note_states(tool_.spheres, pose, *solid.surface, at, states);
-  for (const SphereState state : states) {
-    answer.body.boundary += state == SphereState::boundary;
-    answer.body.inside += state == SphereState::inside;
-  }
+  count_states(states, answer.body);
+  return answer;
+}
+
+SolidAnswer SphereQuery::run(const SolidsAt& solids, std::size_t k, const Pose& pose,
+                             std::span<SphereState> states) {
+  const ToolModel& solid = *solids.solids[k].model;
+  const InnerSphereTree all{solid, solid.levels.back()};
+  const SharedSolid shared = pair_.measure(tree_, pose, all, exact_pose(solids.pose(k)), states);
+  SolidAnswer answer{sum_of(shared, tree_.model, pose), std::nullopt, {}};
+  count_states(states, answer.body);
   return answer;
 }
 

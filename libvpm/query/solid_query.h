@@ -1,4 +1,5 @@
-// Measures a tool against the solids of a scene, by the surfaces of both (libvpm/solid).
+// Measures a tool against the solids of a scene, by the surfaces or the spheres of both
+// (libvpm/solid).
 #pragma once
 
 #include <vpm/query_types.h>
@@ -15,6 +16,7 @@
 #include "libvpm/query/contact_list.h"
 #include "libvpm/solid/placed_solid.h"
 #include "libvpm/solid/solid_pair.h"
+#include "libvpm/solid/sphere_pair.h"
 
 namespace vpm {
 
@@ -34,7 +36,7 @@ struct SolidsAt {
 // What one solid gives.
 struct SolidAnswer {
   BodySum body;
-  double closure = 0;  // SharedSolid::closure
+  std::optional<double> closure;  // SharedSolid::closure; spheres have none
   std::vector<ContactPatch> contacts;
 };
 
@@ -69,13 +71,28 @@ class SolidQuery {
   };
 
   SolidPair& pair_with(const PlacedSolid& solid, std::size_t k);
-  BodySum sum_of(const SharedSolid& shared, const Pose& pose) const;
   std::vector<ContactPatch> patches_of(const SharedSolid& shared, const Pose& pose,
                                        std::size_t body) const;
 
   const ToolModel& tool_;
   std::shared_ptr<const SolidSurface> surface_;  // null before the first call
   std::vector<std::optional<Pair>> pairs_;       // by the solids' places
+};
+
+// Measures by the spheres of both, as the measure as printed does. Refers to its tool, as
+// SolidQuery.
+class SphereQuery {
+ public:
+  SphereQuery(const ToolModel& tool, const Level& level) : tree_{tool, level} {}
+
+  // Returns what SolidQuery::run() does, but for the contacts. Takes all spheres of the solid,
+  // which must have a model.
+  SolidAnswer run(const SolidsAt& solids, std::size_t k, const Pose& pose,
+                  std::span<SphereState> states);
+
+ private:
+  InnerSphereTree tree_;
+  SpherePair pair_;
 };
 
 // Returns the surface of a tool, prepared. Throws Error(refused) if the tool keeps none.

@@ -96,7 +96,8 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
       level_(tool.level(options.level)),
       options_(options),
       states_(level_.sphere_count),
-      solid_query_(std::make_shared<SolidQuery>(tool)) {
+      solid_query_(std::make_shared<SolidQuery>(tool)),
+      sphere_query_(tool, level_) {
   check_options(options, tool);
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);
@@ -112,7 +113,8 @@ ToolQuery::ToolQuery(const ToolQuery& other)
       level_(other.level_),
       options_(other.options_),
       states_(level_.sphere_count),
-      solid_query_(std::make_shared<SolidQuery>(*other.solid_query_)) {
+      solid_query_(std::make_shared<SolidQuery>(*other.solid_query_)),
+      sphere_query_(tool_, level_) {
   if (other.device_) device_ = make_device_measure(tool_, level_, options_);
   if (other.paper_) paper_ = std::make_unique<PaperMeasure>(*other.paper_);
   if (!other.refined_) return;
@@ -124,8 +126,11 @@ ToolQuery::ToolQuery(const ToolQuery& other)
 void ToolQuery::check(std::span<const AnyBody> scene, const SolidsAt& solids) const {
   if (scene.empty() && solids.solids.empty()) invalid("a scene needs a body");
   check_poses(solids);
-  if (paper_ && !solids.solids.empty())
-    invalid("the measure as printed knows no solids", "leave the measure or the solids out");
+  for (const PlacedSolid& solid : solids.solids)
+    if (paper_ && !solid.model)
+      invalid("the measure as printed takes the spheres of solids, and body " +
+                  std::to_string(solid.place) + ", counted from 0, is a mesh without them",
+              "give its tool model (.vpmg) instead, or leave the measure out");
   if (options_.shadows != Shadows::solid) return;
   for (const AnyBody& body : scene)
     if (!body.tells_inside() && body.points() > 0)
@@ -150,7 +155,7 @@ Result ToolQuery::run(std::span<const AnyBody> scene, const Pose& given, const S
   has_joined_states_ = scene.size() > 1 || !solids.solids.empty();
   if (has_joined_states_) of_body_.assign(states_.size(), SphereState::outside);
   for (std::size_t k = 0; k < scene.size(); ++k) {
-    parts_.push_back({measure(scene[k], k, pose), std::nullopt, 0});
+    parts_.push_back({measure(scene[k], k, pose), std::nullopt, std::nullopt});
     sum.add(parts_.back().body);
     if (options_.contacts > 0) note_contacts(solids.place_of_other(k), pose);
     if (has_joined_states_) add_states();
@@ -176,7 +181,7 @@ Collides ToolQuery::collides(std::span<const AnyBody> scene, const Pose& given, 
     if (!found || counts(found->sum)) return Collides::yes;
     sum.add(*found);
   }
-  const double closure = add_solids(solids, pose, sum);
+  const std::optional<double> closure = add_solids(solids, pose, sum);
   return vpm::collides(finished(sum, pose, closure), unseen_limit);
 }
 
@@ -189,10 +194,10 @@ std::vector<Result> ToolQuery::parts() const {
     return finished(sum, last_pose_, part.closure);
   };
   for (const Part& part : parts_)
-    if (part.closure) results[part.place] = result(part), is_taken[part.place] = true;
+    if (part.place) results[*part.place] = result(part), is_taken[*part.place] = true;
   std::size_t next = 0;
   for (const Part& part : parts_) {
-    if (part.closure) continue;
+    if (part.place) continue;
     while (is_taken[next]) ++next;
     results[next++] = result(part);
   }
@@ -338,7 +343,7 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
     });
     measures.front()->run(body, measures, placed, of_body);
   }
-  closures.assign(solids.empty() ? 0 : count, 0);
+  closures.assign(solids.empty() ? 0 : count, {});
   for (std::size_t k = 0; k < closures.size(); ++k) {
     ToolQuery& query = *queries[jobs[k].tool];
     query.parts_.clear();
@@ -346,19 +351,22 @@ void ToolQuery::run_on_device(std::span<ToolQuery* const> queries, std::span<con
   }
   for_each_job(count, [&](std::size_t k) {
     if (!scene.empty()) sums[k].add(of_body[k]);  // of the last body
-    results[k] = queries[jobs[k].tool]->finished(
-        sums[k], exact[k], closures.empty() ? std::nullopt : std::optional(closures[k]));
+    results[k] = queries[jobs[k].tool]->finished(sums[k], exact[k],
+                                                 closures.empty() ? std::nullopt : closures[k]);
   });
 }
 
 // Adds what solids give, and returns the largest closure.
-double ToolQuery::add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum) {
-  double closure = 0;
+std::optional<double> ToolQuery::add_solids(const SolidsAt& solids, const Pose& pose,
+                                            SceneSum& sum) {
+  std::optional<double> closure;
   for (std::size_t k = 0; k < solids.solids.size(); ++k) {
-    const SolidAnswer found = solid_query_->run(solids, k, pose, states_, options_.contacts);
+    const SolidAnswer found = paper_
+                                  ? sphere_query_.run(solids, k, pose, states_)
+                                  : solid_query_->run(solids, k, pose, states_, options_.contacts);
     patches_.insert(patches_.end(), found.contacts.begin(), found.contacts.end());
     sum.add(found.body);
-    closure = std::max(closure, found.closure);
+    closure = std::max(closure, found.closure);  // nothing is less than any
     parts_.push_back({found.body, found.closure, solids.solids[k].place});
     const bool is_touched = found.body.boundary > 0 || found.body.inside > 0;
     if (has_joined_states_ && is_touched) join_states();

@@ -61,9 +61,11 @@ class ToolQuery {
                                              const DevicePoses& poses,
                                              std::span<const PlacedSolid> solids = {});
 
-  // Prepares the tool's surface, which solids of a scene need. Throws Error(refused) if it has
-  // none.
-  void prepare_surface() { solid_query_->prepare(); }
+  // Prepares the tool's surface, if the measure asks for it before solids. Throws Error(refused) if
+  // it has none.
+  void prepare_surface() {
+    if (!paper_) solid_query_->prepare();
+  }
   // Takes the surface that another query of the same tool prepares for solids, or has prepared.
   void share_surface_of(const ToolQuery& other) { solid_query_ = other.solid_query_; }
 
@@ -87,7 +89,7 @@ class ToolQuery {
     std::vector<BodyJob> placed;
     std::vector<BodySum> of_body;
     std::vector<SceneSum> sums;
-    std::vector<double> closures;  // only where the scene has solids
+    std::vector<std::optional<double>> closures;  // only where the scene has solids
   };
 
   static void run_on_cpu(std::span<ToolQuery* const> queries, std::span<const AnyBody> scene,
@@ -100,7 +102,7 @@ class ToolQuery {
                             std::span<const PlacedSolid> solids);
   void check(std::span<const AnyBody> scene, const SolidsAt& solids) const;
   BodySum measure(const AnyBody& body, std::size_t place, const Pose& pose);
-  double add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum);
+  std::optional<double> add_solids(const SolidsAt& solids, const Pose& pose, SceneSum& sum);
   void note_contacts(std::size_t body, const Pose& pose);
   void add_states() const;
   void join_states() const;
@@ -116,12 +118,13 @@ class ToolQuery {
   mutable std::vector<SphereState> states_;
   mutable std::vector<SphereState> of_body_;  // of the last one, if there are several
   bool has_joined_states_ = false;            // in of_body_, of several bodies or solids
-  std::shared_ptr<SolidQuery> solid_query_;
+  std::shared_ptr<SolidQuery> solid_query_;   // by surfaces
+  SphereQuery sphere_query_;                  // for the measure as printed
   // What each body gave for the last single pose, and which of them were solids.
   struct Part {
     BodySum body;
-    std::optional<double> closure;  // of a solid
-    std::size_t place = 0;          // of a solid
+    std::optional<double> closure;     // of a solid's surface
+    std::optional<std::size_t> place;  // of a solid
   };
   std::vector<Part> parts_;  // solids last
   Pose last_pose_;

@@ -31,11 +31,6 @@ Pose small_motion(int attempt, double reach) {
 auto key_of(const SolidSurface& s) {
   return std::tuple(s.reach(), s.volume(), s.hash());
 }
-auto key_of(const Pose& p) {
-  const auto& [t, x, y, z] =
-      std::tuple(p.translation, p.rotation.row0, p.rotation.row1, p.rotation.row2);
-  return std::tuple(t.x, t.y, t.z, x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z);
-}
 
 // Adds a contact to the sum of others, but for the depth.
 void add(SharedContact& sum, const SharedContact& contact) {
@@ -53,14 +48,13 @@ Pose about_center(const Pose& pose, const SolidSurface& solid) {
 }  // namespace
 
 SolidPair::SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b)
-    : first_(key_of(*b) < key_of(*a) ? b : a),
-      second_(first_ == a ? b : a),
-      is_turned_(first_ != a),
-      are_twins_(key_of(*a) == key_of(*b)),
+    : order_(key_of(*a), key_of(*b)),
+      first_(order_.is_turned() ? b : a),
+      second_(order_.is_turned() ? a : b),
       surfaces_(*first_, *second_) {}
 
 SolidPair::Order SolidPair::order(const Pose& pose_a, const Pose& pose_b) const {
-  const bool turned = are_twins_ ? key_of(pose_b) < key_of(pose_a) : is_turned_;
+  const bool turned = order_.is_turned(pose_a, pose_b);
   const Pose &first = turned ? pose_b : pose_a, &second = turned ? pose_a : pose_b;
   return {turned, about_center(first, *first_), about_center(second, *second_)};
 }

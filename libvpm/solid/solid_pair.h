@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "libvpm/solid/pair_order.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/surface_pair.h"
 
@@ -38,6 +39,8 @@ struct SharedSolid {
   // The contacts asked for, largest first, and one with all others; they add up to the above, to
   // rounding. Empty if none were asked for.
   std::vector<SharedContact> contacts;
+
+  Vec3 torque_about(Vec3 x) const { return torque + cross(centroid - x, force); }
 };
 
 // Pair of solids, prepared to be asked at many poses. Belongs to one thread.
@@ -71,9 +74,8 @@ class SolidPair {
   std::vector<SharedContact> contacts(std::uint32_t count, Vec3 about) const;
   double closure(const SurfacePairSums& sums) const;
 
-  std::shared_ptr<const SolidSurface> first_, second_;  // in the one order
-  bool is_turned_ = false;  // a is the second; twins are ordered by their poses
-  bool are_twins_ = false;
+  PairOrder order_;
+  std::shared_ptr<const SolidSurface> first_, second_;  // in that order
   SurfacePair surfaces_;
 };
 

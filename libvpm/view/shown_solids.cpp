@@ -42,7 +42,7 @@ void ShownSolids::add_to(Page& page, const std::vector<std::vector<Pose>>& poses
   const bool moves = std::ranges::any_of(poses, [](const auto& step) { return !step.empty(); });
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     const auto& [name, body] = solids_[k];
-    const auto& [surface, to_world, place] = *HandleAccess::solid_of(body);
+    const auto& [surface, to_world, place, model] = *HandleAccess::solid_of(body);
     std::vector<Pose> path;
     for (const auto& step : poses) path.push_back(step.empty() ? to_world : step[k]);
     path.resize(moves ? path.size() : 1, to_world);

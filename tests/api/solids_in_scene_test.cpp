@@ -179,6 +179,37 @@ TEST_F(SolidsInScene, RefuseWhatCannotBeMeasured) {
             Kind::invalid_argument);
 }
 
+// By the measure as printed, solids are spheres: what these share is less than the overlap, is
+// summed over bodies in any order in the same bits, and is told without a closure.
+TEST_F(SolidsInScene, AreSpheresByTheMeasureAsPrinted) {
+  vpm::Query paper(tool_, {.measure = vpm::Measure::paper}), exact(tool_);
+  const vpm::SolidBody solid(tool_);
+  const Body right(solid, at(.15, .01, .02)), left(solid, at(-.12, .03, 0)),
+      front(wall(), vpm::Denoising::off);
+  const Pose pose{vpm::rotation_from_quaternion({std::sin(.1), 0, 0, std::cos(.1)}), {0, 0, .95}};
+  const std::vector<Pose> places{at(.15, 0, .9), at(-.12, 0, .9)};
+  const vpm::Scene scene({right, left, front}), backward({front, left, right});
+  const Result r = paper.run(scene, pose, places);
+  const std::vector<Result> parts = paper.parts();
+  ASSERT_EQ(parts.size(), 3U);
+  const std::vector<Pose> turned{places[1], places[0]};
+  const Result other = paper.run(backward, pose, turned);
+  EXPECT_EQ(r.volume, other.volume);
+  EXPECT_EQ(r.wrench, other.wrench);
+  EXPECT_EQ(r.closure, std::nullopt);
+  EXPECT_GT(r.boundary, 0U);
+  EXPECT_NEAR(parts[0].volume + parts[1].volume + parts[2].volume, r.volume, 1e-12 * volume_);
+  for (const std::size_t k : {0, 1}) {
+    const Result truth = exact.run(vpm::Scene(Body(solid, places[k])), pose);
+    EXPECT_GT(parts[k].volume, .1 * truth.volume);
+    EXPECT_LT(parts[k].volume, .9 * truth.volume);
+    EXPECT_GT(parts[k].wrench.force.x * truth.wrench.force.x, 0);
+  }
+  std::vector<Result> batch(5);
+  paper.run(scene, std::vector<vpm::Job>(5, {pose, 0, places}), batch);
+  for (const Result& one : batch) EXPECT_EQ(one, r);
+}
+
 // A file of before, whose model keeps no surface, is read, asked of clouds, and refused for solids.
 TEST(SolidsOfOldFiles, AreRefusedWithTheCure) {
   const vpm::Tool old = vpm::Tool::read(VPM_SOURCE_DIR "/formats/golden/v1/cube.vpmg");

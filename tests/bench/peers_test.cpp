@@ -14,7 +14,6 @@
 #include "libvpm/synthetic/truth.h"
 #include "tools/bench/peers/fcl_pair.h"
 #include "tools/bench/peers/shells.h"
-#include "tools/bench/peers/sphere_pair.h"
 #include "tools/bench/penetration_case.h"
 
 namespace vpm::bench {
@@ -150,35 +149,6 @@ TEST(VoxelCount, ComesToTheVolume) {
     VoxelCountPeer peer(voxels_of(synthetic::make_cube(.1), 50), wall);
     EXPECT_NEAR(peer.query({{}, {0, 0, .95 + deep}}).volume, .1 * .1 * deep, 1.1e-2 * 1e-3);
   }
-}
-
-TEST(SpherePair, SharesWhatTwoBallsShare) {
-  const Solid a = synthetic::make_icosphere(.05, 5);
-  for (const double apart : {.02, .05, .07}) {
-    Solid b = synthetic::make_icosphere(.03, 5);
-    for (Vec3& v : b.vertices) v.x += apart;
-    EXPECT_NEAR(shared_by_balls(.05, .03, apart), synthetic::shared_volume(a, b), 1e-6) << apart;
-  }
-  EXPECT_EQ(shared_by_balls(.05, .03, .09), 0);
-}
-
-// The hierarchies leave out no pair of spheres.
-TEST(SpherePair, SumsAllPairsOfSpheres) {
-  const Solid cube = synthetic::make_cube(.1);
-  const ToolModel model = make_tool(cube, {60});
-  const Pose pose{turned(), {.07, .02, -.01}};
-  const PeerAnswer answer = SpherePairPeer(model, model, 60).query(pose);
-  double volume = 0;
-  std::size_t pairs = 0;
-  for (const Sphere& a : model.spheres)
-    for (const Sphere& b : model.spheres) {
-      const double apart = norm(pose * a.center - b.center);
-      volume += shared_by_balls(a.radius, b.radius, apart);
-      pairs += apart < a.radius + b.radius;
-    }
-  EXPECT_EQ(answer.contacts, pairs);
-  EXPECT_NEAR(answer.volume, volume, 1e-9 * volume);
-  EXPECT_GT(answer.wrench.force.x, 0);  // away from the other
 }
 
 TEST(FclPair, PushesTheToolAwayWhereThereIsFcl) {

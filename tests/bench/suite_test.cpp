@@ -143,6 +143,8 @@ TEST(Pairs, ShareTheTrueVolume) {
     EXPECT_LE(result["volume_error"].get<double>(), 1e-6) << result;
     EXPECT_LE(result["closure"].get<double>(), 1e-8) << result;
     EXPECT_GT(result["us"]["5 %"]["force"]["median"].get<double>(), 0) << result;
+    EXPECT_GT(result["volume_error_of_spheres"].get<double>(), 1e-3) << result;
+    EXPECT_LT(result["volume_error_of_spheres"].get<double>(), 1) << result;
   }
   EXPECT_EQ(report.failure, "");
 }

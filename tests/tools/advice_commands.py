@@ -2,7 +2,7 @@
 import re
 
 from advice_files import MESH_STARTS, SCAN_STARTS, STARTS
-from advice_words import CAMERA, POSE, TOOL, STEPS, COUPLED, WALL, ROUGH
+from advice_words import ASK, CAMERA, POSE, TOOL, STEPS, COUPLED, WALL, ROUGH
 
 REMOVED = f"vpm-normals wall.pgm {CAMERA} -o out.vpmc --remove small.off"
 AT_ONCE, LATER = (f'{{"time":{time},"solids":[[{POSE}]]}}' for time in (0, 9))
@@ -263,6 +263,7 @@ COMMANDS = [
      f"{TOOL} --tool single.vpmg --poses poses.txt"),
     (f"{TOOL} --poses poses.txt --coherent --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --coherent", WALL),
+    (f"{ASK} --solid small.off --measure paper", r"give its tool model \(.vpmg\) instead", f"{ASK} --solid small.vpmg --measure paper"),
     (f"{TOOL} --poses poses.txt --contacts --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --contacts", WALL),
     (f"{TOOL} --poses poses.txt --interval --measure paper", "leave the other measure or device out",

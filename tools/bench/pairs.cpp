@@ -1,5 +1,6 @@
 // Measures one solid against another: the error of the volume, closure, jumps along a path, time at
-// contacts of 0, 5 and 30 % of the smaller solid, memory, and time to prepare.
+// contacts of 0, 5 and 30 % of the smaller solid, memory, and time to prepare. Beside it the
+// measure as printed, by spheres of both.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,10 @@
 #include <random>
 
 #include "libvpm/core/exact_pose.h"
+#include "libvpm/graph/hierarchy.h"
+#include "libvpm/packing/packer.h"
 #include "libvpm/solid/solid_pair.h"
+#include "libvpm/solid/sphere_pair.h"
 #include "libvpm/synthetic/shared_volume.h"
 #include "tools/bench/solid_pairs.h"
 #include "tools/bench/statistics.h"
@@ -21,6 +25,7 @@ constexpr double kMaxVolumeError = 1e-6;  // of the smaller solid; more is a fai
 constexpr double kMicrometre = 1e-6;
 // Pairs with more triangles than this compare fewer poses with the truth, which takes seconds.
 constexpr std::size_t kLarge = 50000;
+constexpr std::uint32_t kSpheresOfEach = 1000, kSpheresIfQuick = 30;
 
 // Pose of b against a: turned, with its centre of mass at a distance along a direction.
 struct Approach {
@@ -29,6 +34,22 @@ struct Approach {
 
   Pose at(double distance) const { return {turn, distance * way}; }
 };
+
+// Returns as much of a tool model as spheres against spheres asks for.
+ToolModel packed(const Solid& solid, std::uint32_t spheres) {
+  PackOptions options;
+  options.spheres = spheres;
+  const MassProperties mass = mass_properties(solid);
+  ToolModel model;
+  model.volume = mass.volume, model.center_of_mass = mass.center_of_mass;
+  model.radius = bounding_radius(solid, mass.center_of_mass);
+  model.solid_hash = content_hash(solid);
+  model.spheres = pack(solid, options).spheres;
+  Level& level = model.levels.emplace_back();
+  level.sphere_count = static_cast<std::uint32_t>(model.spheres.size());
+  level.hierarchy = build_hierarchy(model.spheres);
+  return model;
+}
 
 class MeasuredPair {
  public:
@@ -40,6 +61,8 @@ class MeasuredPair {
     build_seconds_ = process_seconds() - start;
     pair_.emplace(a_, b_);
     smaller_ = std::min(a_->volume(), b_->volume());
+    const std::uint32_t spheres = options.quick ? kSpheresIfQuick : kSpheresOfEach;
+    packed_a_ = packed(solids_.a, spheres), packed_b_ = packed(solids_.b, spheres);
   }
 
   nlohmann::json run() {
@@ -50,6 +73,7 @@ class MeasuredPair {
     json_.update({{"pair", solids_.name},
                   {"triangles", {a_->triangles(), b_->triangles()}},
                   {"volume_error", worst_error_},
+                  {"volume_error_of_spheres", worst_of_spheres_},
                   {"closure", worst_closure_},
                   {"build_seconds", build_seconds_},
                   {"bytes", a_->bytes() + b_->bytes()}});
@@ -66,6 +90,11 @@ class MeasuredPair {
       for (Vec3& v : solid->vertices) v = v - center;
     }
     return pair;
+  }
+
+  SharedSolid spheres(const Pose& pose) {
+    return sphere_pair_.measure({packed_a_, packed_a_.levels.back()}, {},
+                                {packed_b_, packed_b_.levels.back()}, pose);
   }
 
   double volume(const Pose& pose) { return pair_->measure({}, pose, false).volume; }
@@ -100,6 +129,8 @@ class MeasuredPair {
       const double truth = synthetic::shared_volume(solids_.a, moved);
       const double error = std::abs(shared.volume - truth) / smaller_;
       worst_error_ = std::isnan(error) ? error : std::max(worst_error_, error);
+      const double by_spheres = spheres(pose).volume;
+      worst_of_spheres_ = std::max(worst_of_spheres_, std::abs(by_spheres - truth) / smaller_);
       if (distance == distances[1])
         json_["error_at_10_um"] = std::abs(shared.volume - truth) / truth;  // of the volume itself
     }
@@ -135,17 +166,21 @@ class MeasuredPair {
       poses.push_back(approach.at(distance_of(approach, fraction) + apart));
     }
     const std::string place = std::to_string(std::lround(100 * fraction)) + " %";
-    json_["us"][place] = {{"volume", times_of(poses, false)}, {"force", times_of(poses, true)}};
+    json_["us"][place] = {
+        {"volume", times_of(poses, [&](const Pose& p) { pair_->measure({}, p, false); })},
+        {"force", times_of(poses, [&](const Pose& p) { pair_->measure({}, p); })},
+        {"spheres", times_of(poses, [&](const Pose& p) { spheres(p); })}};
   }
 
   // Returns the median and the worst over the poses, of the median of several runs each, us.
-  nlohmann::json times_of(const std::vector<Pose>& poses, bool with_force) {
+  template <class Ask>
+  nlohmann::json times_of(const std::vector<Pose>& poses, const Ask& ask) {
     const int runs = options_.quick ? 3 : 9;
     std::vector<std::vector<double>> samples(poses.size());
     for (int run = 0; run < runs; ++run)
       for (std::size_t k = 0; k < poses.size(); ++k) {
         const double start = thread_seconds();
-        pair_->measure({}, poses[k], with_force);
+        ask(poses[k]);
         samples[k].push_back(1e6 * (thread_seconds() - start));
       }
     std::vector<double> medians;
@@ -158,7 +193,10 @@ class MeasuredPair {
   const SuiteOptions& options_;
   std::shared_ptr<const SolidSurface> a_, b_;
   std::optional<SolidPair> pair_;
+  ToolModel packed_a_, packed_b_;
+  SpherePair sphere_pair_;
   double smaller_ = 0, build_seconds_ = 0, worst_error_ = 0, worst_closure_ = 0;
+  double worst_of_spheres_ = 0;
   nlohmann::json json_;
 };
 
@@ -172,14 +210,16 @@ void add_line(const nlohmann::json& r, Report& report) {
        r["force_jump"].get<double>(), us("0 %", "volume", "median"), us("5 %", "volume", "median"),
        us("5 %", "volume", "worst"), us("5 %", "force", "median"), us("5 %", "force", "worst"),
        us("30 %", "volume", "median"), us("30 %", "force", "median"),
-       r["build_seconds"].get<double>(), 1e-6 * r["bytes"].get<double>()});
+       r["build_seconds"].get<double>(), 1e-6 * r["bytes"].get<double>(),
+       r["volume_error_of_spheres"].get<double>(), us("5 %", "spheres", "median")});
   char line[160];
-  std::snprintf(line, sizeof line, "%-24s %9.1e %9.1e %7.1f %7.1f [%5.0f] %7.1f [%5.0f] %7.1f\n",
-                r["pair"].get<std::string>().c_str(), r["volume_error"].get<double>(),
-                r["closure"].get<double>(), us("0 %", "force", "median"),
-                us("5 %", "volume", "median"), us("5 %", "volume", "worst"),
-                us("5 %", "force", "median"), us("5 %", "force", "worst"),
-                us("30 %", "force", "median"));
+  std::snprintf(
+      line, sizeof line, "%-24s %9.1e %9.1e %7.1f %7.1f [%5.0f] %7.1f [%5.0f] %7.1f %7.0e %6.1f\n",
+      r["pair"].get<std::string>().c_str(), r["volume_error"].get<double>(),
+      r["closure"].get<double>(), us("0 %", "force", "median"), us("5 %", "volume", "median"),
+      us("5 %", "volume", "worst"), us("5 %", "force", "median"), us("5 %", "force", "worst"),
+      us("30 %", "force", "median"), r["volume_error_of_spheres"].get<double>(),
+      us("5 %", "spheres", "median"));
   report.summary += line;
 }
 
@@ -188,14 +228,26 @@ void add_line(const nlohmann::json& r, Report& report) {
 Report run_pairs(const SuiteOptions& options) {
   Report report;
   report.suite = "pairs";
-  report.table.columns = {"pair",         "triangles_a",      "triangles_b",
-                          "volume_error", "closure",          "force_jump",
-                          "us_0_volume",  "us_5_volume",      "us_5_volume_worst",
-                          "us_5_force",   "us_5_force_worst", "us_30_volume",
-                          "us_30_force",  "build_seconds",    "memory_mb"};
+  report.table.columns = {"pair",
+                          "triangles_a",
+                          "triangles_b",
+                          "volume_error",
+                          "closure",
+                          "force_jump",
+                          "us_0_volume",
+                          "us_5_volume",
+                          "us_5_volume_worst",
+                          "us_5_force",
+                          "us_5_force_worst",
+                          "us_30_volume",
+                          "us_30_force",
+                          "build_seconds",
+                          "memory_mb",
+                          "volume_error_spheres",
+                          "us_5_spheres"};
   report.summary =
       "pair                     volume    closure  us: 0 %  5 % volume [worst] 5 % force [worst] "
-      "30 %\n";
+      "30 %  spheres: volume, us\n";
   const std::vector<PairOfSolids> pairs = pairs_of_solids(options.quick, options.meshes);
   report.settings = {{"quick", options.quick}, {"pairs", pairs.size()}};
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -49,9 +49,9 @@ class VPM_API Query {
   //
   // Solids of the scene are measured by the tool's surface and theirs, whatever the level, on the
   // CPU; `solids` moves them, as Job::solids does. The first call prepares the tool's surface (.2 s
-  // for 7000 triangles). Throws Error(refused) for a tool without surface, and where the boundary
-  // of what it shares with a solid does not close, a defect of a mesh; Error(invalid_argument) for
-  // another number of poses than of solids, and for the measure as printed, which knows none.
+  // for 7000 triangles). Throws Error(refused) for a tool without one, and where what is shared has
+  // no closed boundary, a defect of a mesh; Error(invalid_argument) for another number of poses,
+  // and for meshes by the measure as printed, which takes the spheres of both and has no closure.
   Result run(const Scene& scene, const Pose& pose, std::span<const Pose> solids = {});
 
   // Returns vpm::collides() of the answer at a pose. On the CPU it ends as soon as a part of the

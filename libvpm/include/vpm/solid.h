@@ -55,7 +55,6 @@ struct SolidOptions {
 };
 
 struct CheckedSolid;  // the library's own
-struct HandleAccess;  // the library's own
 struct Packing;       // the library's own
 class SolidSurface;   // the library's own
 
@@ -154,8 +153,8 @@ class VPM_API SolidBody {
   // overlaps once: .2 s for 7000 triangles, 1 s for 86 000. `with_force` false leaves out what
   // forces need, which is most of that. Throws Error(refused) for a mesh without volume.
   explicit SolidBody(const SolidMesh& mesh, bool with_force = true);
-  // Prepares the surface that a tool model keeps, in the frame of its mesh. This needs no more than
-  // the library vpm, as does all below. Throws Error(refused) for a model that keeps none.
+  // Prepares the surface that a tool model keeps, in its mesh's frame, and shares the model. The
+  // library vpm has this and all below. Throws Error(refused) for a model that keeps none.
   explicit SolidBody(const Tool& tool, bool with_force = true);
 
   // Returns the volume, m^3.
@@ -172,6 +171,7 @@ class VPM_API SolidBody {
   explicit SolidBody(std::shared_ptr<const SolidSurface> surface) : surface_(std::move(surface)) {}
 
   std::shared_ptr<const SolidSurface> surface_;  // null once moved from
+  std::shared_ptr<const ToolModel> model_;       // whose spheres it has; null for a mesh
 };
 
 // What two solids a and b share. All places, directions and moments are in the world's frame and

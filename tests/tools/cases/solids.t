@@ -63,8 +63,10 @@ $ vpm-query --tool cube.vpmg --solid gone.vpmg@1,2,3,0,0,0,1 --pose 0,0,0,0,0,0,
 $ vpm-query --tool cube.vpmg --solid wall.vpmc --pose 0,0,0,0,0,0,1
 2> vpm-query: error: wall.vpmc: this is a cloud (.vpmc); needed is a tool model (.vpmg), which vpm-graph writes
 [1]
-$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --measure paper
-2> vpm-query: error: the measure as printed knows no solids; leave the measure or the solids out
+$ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0.1,0,0,0,0,0,1 --measure paper | grep -o '"measure":"paper"\|"closure"'
+"measure":"paper"
+$ vpm-query --tool cube.vpmg --solid cube.off --pose 0,0,0,0,0,0,1 --measure paper
+2> vpm-query: error: the measure as printed takes the spheres of solids, and body 0, counted from 0, is a mesh without them; give its tool model (.vpmg) instead, or leave the measure out
 [2]
 $ vpm-query --tool cube.vpmg --solid cube.vpmg --pose 0,0,0,0,0,0,1 --for-scene
 2> vpm-query: error: a level by scene or deadline is chosen by points, and the scene has solids only; leave that choice out, or add a cloud

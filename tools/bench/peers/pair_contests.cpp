@@ -6,11 +6,11 @@
 
 #include "libvpm/core/exact_pose.h"
 #include "libvpm/solid/solid_pair.h"
+#include "libvpm/solid/sphere_pair.h"
 #include "libvpm/synthetic/shared_volume.h"
 #include "tools/bench/peers/contest.h"
 #include "tools/bench/peers/fcl_pair.h"
 #include "tools/bench/peers/shells.h"
-#include "tools/bench/peers/sphere_pair.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/solid_pairs.h"
 
@@ -30,8 +30,7 @@ class ExactPair : public Peer {
     PeerAnswer answer;
     answer.volume = shared.volume;
     if (!with_force_) return answer;
-    const Vec3 arm = shared.centroid - pose * a_->center_of_mass();
-    answer.wrench = {shared.force, shared.torque + cross(arm, shared.force)};
+    answer.wrench = {shared.force, shared.torque_about(pose * a_->center_of_mass())};
     return answer;
   }
   std::size_t bytes() const override { return a_->bytes() + b_->bytes(); }
@@ -40,6 +39,35 @@ class ExactPair : public Peer {
   SurfacePtr a_, b_;
   SolidPair pair_;
   bool with_force_;
+};
+
+// The measure as printed, of the first solid as the tool: spheres against spheres.
+class SpherePairPeer : public Peer {
+ public:
+  // The models must outlive it.
+  SpherePairPeer(const ToolModel& a, const ToolModel& b, std::uint32_t spheres)
+      : a_{a, a.level(spheres)}, b_{b, b.level(spheres)} {}
+
+  PeerAnswer query(const Pose& pose) override {
+    const SharedSolid shared = pair_.measure(a_, pose, b_, {});
+    return {shared.volume,
+            {shared.force, shared.torque_about(pose * a_.model.center_of_mass)},
+            pair_.contacts()};
+  }
+  std::size_t bytes() const override {
+    std::size_t bytes = 0;
+    for (const InnerSphereTree* tree : {&a_, &b_}) {
+      const Hierarchy& hierarchy = tree->level.hierarchy;
+      bytes += tree->level.sphere_count * sizeof(Sphere) +
+               hierarchy.nodes.size() * sizeof(HierarchyNode) +
+               hierarchy.leaves.size() * sizeof(std::uint32_t);
+    }
+    return bytes;
+  }
+
+ private:
+  InnerSphereTree a_, b_;
+  SpherePair pair_;
 };
 
 // Integrates the force of the depth below `other` over the shell's points inside, by the closest
