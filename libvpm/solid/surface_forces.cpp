@@ -31,6 +31,8 @@ constexpr double kSmallest = 0.1;
 // Pieces up to so many times as large are sampled where samples tell whether
 // they may stay, or to foretell smaller ones.
 constexpr double kForetelling = 4;
+// Cells of the other's grid by which depths below planes may differ from it.
+constexpr double kPlausibleCells = 0.1;
 // Pieces that tell how deep thin solids are.
 constexpr std::size_t kProbes = 8;
 
@@ -343,9 +345,13 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
     CrossedTriangle part;
     part.corner = cell.corner, part.normal = normal;
     add_cuts(cell, part);
-    const auto added = add_force_of_cut(which, part, cell.segments);
-    if (!added) return;
-    piece = *added;
+    const double area = part.area.real();
+    if (!(area > 0)) return;  // rounding
+    const Vec3 middle = part.mean.real() / area;
+    Foretold linear = plane_across(which, cell.segments);
+    if (!is_plausible(which, linear, middle)) linear = depth_at(which, middle);
+    piece = add_cut_force(which, part.moments(), linear);
+    piece.middle = middle;
   }
   if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
 }
@@ -364,6 +370,19 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
   LinearPiece piece = add_cut_force(which, triangle.moments(), linear);
   piece.middle = middle;
   return piece;
+}
+
+// Returns whether the depth below the planes that cut a cell may stand for that at its middle: they
+// agree, and the other's grid agrees with them. Where it does not, another face is nearer, as
+// beside flush ones.
+bool SurfacePair::is_plausible(std::size_t which, const Foretold& below_planes, Vec3 middle) const {
+  if (!below_planes.is_known || squared_norm(below_planes.depth.gradient) < kAgreeing2)
+    return false;
+  const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
+  const SolidSurface& other = *roles_[1 - which].solid;
+  const double error =
+      other.grid_depth(to_other * (unit_ * middle)) - unit_ * below_planes.at(middle);
+  return std::abs(error) <= kPlausibleCells * other.grid_cell();
 }
 
 // Returns the depth below the mean of the planes that cut a triangle, weighted

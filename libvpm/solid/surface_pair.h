@@ -180,6 +180,7 @@ class SurfacePair {
   std::optional<LinearPiece> add_force_of_cut(std::size_t role, const CrossedTriangle& triangle,
                                               std::span<const CutSegment> segments);
   Foretold plane_across(std::size_t role, std::span<const CutSegment> segments) const;
+  bool is_plausible(std::size_t role, const Foretold& below_planes, Vec3 middle) const;
   Foretold depth_at(std::size_t role, Vec3 place);
   LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear);
 
