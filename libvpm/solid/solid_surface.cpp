@@ -12,9 +12,11 @@ namespace vpm {
 namespace {
 
 constexpr int kGridCells = 64;
-// The grid tells depths of this many of its cells and more; smaller ones are distances to the
-// closest point, since the grid is wrong by a cell or two near the surface.
-constexpr double kNearCells = 1.5;
+// Depths below so many of the grid's cells are distances to the closest point, since the grid is
+// wrong by a cell or two near the surface. Within the next cells both are mixed, the deeper the
+// more the grid's, so that forces do not jump: at creases of the depth the grid is wrong
+// everywhere.
+constexpr double kNearCells = 1.5, kMixedCells = 0.25;
 
 // Returns a well-mixed number from 0 to 1 (the finaliser of MurmurHash3, public domain).
 double hashed_fraction(std::uint64_t v) {
@@ -87,7 +89,8 @@ Depth SolidSurface::exact_depth(Vec3 x) const {
 
 Depth SolidSurface::depth(Vec3 x) const {
   const Depth coarse = grid_->at(x);
-  if (coarse.value > kNearCells * grid_->cell()) return coarse;
+  const double part = (coarse.value / grid_->cell() - kNearCells) / kMixedCells;  // of the grid's
+  if (part >= 1) return coarse;
   const double within = std::max(coarse.value, 0.0) + kNearCells * grid_->cell();
   const SurfacePoint nearest = tree_->closest(x, within);
   if (nearest.triangle == SurfacePoint::kNone) return coarse;
@@ -95,7 +98,10 @@ Depth SolidSurface::depth(Vec3 x) const {
   const Vec3 normal = normalized_or_zero(cross(b - a, c - a)), out = x - nearest.point;
   const double sign = dot(out, normal) > 0 ? -1 : 1;
   const bool is_on = nearest.distance <= 1e-9 * reach_;
-  return {sign * nearest.distance, is_on ? -normal : (sign / nearest.distance) * out};
+  const Depth exact{sign * nearest.distance, is_on ? -normal : (sign / nearest.distance) * out};
+  if (part <= 0) return exact;
+  return {exact.value + part * (coarse.value - exact.value),
+          exact.gradient + part * (coarse.gradient - exact.gradient)};
 }
 
 SphereState SolidSurface::state_of(Vec3 center, double radius) const {

@@ -42,8 +42,8 @@ class SolidSurface {
   // Returns the depth of x below the surface, by the grid where it is deep and by the closest point
   // near the surface. Needs has_depth().
   Depth depth(Vec3 x) const;
-  // Returns the depth by the grid alone, which errs by a cell or two at creases, and the size of its
-  // cells. Needs has_depth().
+  // Returns the depth by the grid alone, which errs by a cell or two at creases, and the size of
+  // its cells. Needs has_depth().
   double grid_depth(Vec3 x) const { return grid_->at(x).value; }
   double grid_cell() const { return grid_->cell(); }
   // Returns the depth by the closest point, everywhere. Needs has_depth().
