@@ -63,7 +63,7 @@ UNTRIED = [
     ]),
     ("stands in a transcript: cases/solids.t, resume.t, several_tools.t", [
         "leave that choice out, or add a cloud", "make it again by vpm-graph, without --no-surface",
-        "leave the measure or the solids out", "write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]",
+        "write one for each solid, [[tx,ty,tz,qx,qy,qz,qw], …]",
         "--solid is a file: standard input holds none", ", but --solid is given", 'give one for each, or leave "solids" out',
         "holds lines of a run that was interrupted: give --resume to go on after", "them, or --force to begin anew",
         "give the same options and files, or --force without --resume to begin anew",

@@ -62,7 +62,7 @@ CUDA_VISIBLE_DEVICES=vpm-b
 
 # A process takes one input after the other; if it dies, only the input that it worked on has failed. Poses from pipes keep it waiting.
 $ mkfifo one two; for k in 0 1 2; do echo "{\"cloud\":\"clouds/a/frame-00000$k.depth.vpmc\",\"poses\":\"$(echo one two poses.txt | cut -d' ' -f$((k + 1)))\"}"; done > pipes.txt
-$ vpm-query --list pipes.txt --tool cube.vpmg -o pipes --jobs 1 & worker() { grep -lx "PPid:.$!" /proc/[0-9]*/status | cut -d/ -f3; }; exec 9> one; first=$(worker); cat poses.txt >&9; exec 9>&-; exec 9> two; [ "$(worker)" = $first ] && kill -SEGV $first; wait $!
+$ vpm-query --list pipes.txt --tool cube.vpmg -o pipes --jobs 1 & worker() { grep -slx "PPid:.$!" /proc/[0-9]*/status | cut -d/ -f3; }; exec 9> one; first=$(worker); cat poses.txt >&9; exec 9>&-; exec 9> two; [ "$(worker)" = $first ] && kill -SEGV $first; wait $!
   inputs   there    made    anew  failed   seconds  per second
        3       0       2       0       1 * (glob)
 2> vpm-query: error: clouds/a/frame-000001.depth.vpmc: its process was ended by a signal: Segmentation fault
