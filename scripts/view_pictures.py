@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Makes the pictures of the pages: the tools show the bundled example, headless Chromium photographs it.
 
-usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and examples/pictures
+usage: scripts/view_pictures.py [BIN [OUTPUT [EXAMPLE]]]     by default build/release/bin, examples/pictures, and what make-example writes
 """
 import io
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -32,11 +33,14 @@ def save(png, path):
     print(f"{path}: {path.stat().st_size // 1000} kB")
 
 
-def make_pages(tools, folder):
+def make_pages(tools, folder, example):
     def run(tool, *arguments):
         subprocess.run([tools / tool, *map(str, arguments)], cwd=folder, check=True)
 
-    run("make-example", ".")
+    if example:
+        shutil.copytree(example, folder, dirs_exist_ok=True)
+    else:
+        run("make-example", ".")
     run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 1000, "--view", "pack.html", "--quiet")
     run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", "100", "--view", "graph.html", "--quiet")
     run("vpm-normals", "depth.png", "-o", "scene.vpmc", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", 5000,
@@ -100,7 +104,7 @@ def main():
         sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, headless_page.Browser() as browser:
-        make_pages(tools, folder)
+        make_pages(tools, folder, sys.argv[3] if len(sys.argv) > 3 else None)
         for name, action in PICTURES.items():
             page = browser.open(f"{folder}/{name}.html", 1120, 630)
             page.evaluate(action)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the pictures of the pages again: those that are kept show what the tools show today.
 
-usage: pictures_test.py BIN     exit code 77: skipped, no Chromium, no drawing library or no Pillow
+usage: pictures_test.py BIN EXAMPLE     EXAMPLE: what make-example wrote; exit code 77: skipped, no Chromium, no drawing library or no Pillow
 """
 import importlib.util
 import pathlib
@@ -39,7 +39,8 @@ def main():
         print("skipped: needs Chromium and Pillow (Debian: chromium, python3-pil)")
         return 77
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([sys.executable, REPOSITORY / "scripts/view_pictures.py", sys.argv[1], folder], capture_output=True, text=True)
+        done = subprocess.run([sys.executable, REPOSITORY / "scripts/view_pictures.py", sys.argv[1], folder, sys.argv[2]],
+                              capture_output=True, text=True)
         if done.returncode != 0:
             print(done.stderr)
             return 77 if "draws no pages" in done.stderr else 1
