@@ -117,7 +117,7 @@ Scene::Scene(std::vector<Body> bodies) {
   std::vector<PlacedSolid> solids;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (const PlacedSolid* const solid = HandleAccess::solid_of(bodies[k]))
-      solids.push_back({solid->surface, solid->to_world, k, solid->model});
+      solids.emplace_back(*solid).place = k;
     else
       list.push_back(HandleAccess::held(bodies[k]));  // throws if it was moved from
   }

@@ -61,16 +61,13 @@ Normalized normalize(const Packing& packing, const MassProperties& mass) {
 
 // Returns the number of edges that a triangle has in one direction and none in the other.
 std::size_t count_open_edges(const Solid& solid) {
-  const std::vector<TriangleSide> sides = sorted_sides(solid.vertices.size(), solid.triangles);
   std::size_t open = 0;
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    std::int64_t balance = 0;
-    for (; end < sides.size() && sides[end].low == sides[begin].low &&
-           sides[end].high == sides[begin].high;
-         ++end)
-      balance += sides[end].forward ? 1 : -1;
-    open += static_cast<std::size_t>(std::abs(balance));
-  }
+  for_edges(sorted_sides(solid.vertices.size(), solid.triangles),
+            [&](std::span<const TriangleSide> sides) {
+              std::int64_t balance = 0;
+              for (const TriangleSide& side : sides) balance += side.forward ? 1 : -1;
+              open += static_cast<std::size_t>(std::abs(balance));
+            });
   return open;
 }
 

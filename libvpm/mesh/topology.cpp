@@ -101,20 +101,17 @@ std::size_t count_duplicates(std::vector<Triangle> triangles) {
 Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
   Topology topology;
   topology.neighbor.assign(triangles.size(), {kNone, kNone, kNone});
-  const std::vector<TriangleSide> sides = sorted_sides(vertex_count, triangles);
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    const TriangleSide& first = sides[begin];
-    while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high)
-      ++end;
+  for_edges(sorted_sides(vertex_count, triangles), [&](std::span<const TriangleSide> sides) {
+    const TriangleSide& first = sides.front();
     const Edge edge{first.low, first.high};
-    if (end - begin == 1) topology.boundary.push_back(edge);
-    if (end - begin > 2) topology.non_manifold.push_back(edge);
-    if (end - begin != 2) continue;
-    const TriangleSide& second = sides[begin + 1];
+    if (sides.size() == 1) topology.boundary.push_back(edge);
+    if (sides.size() > 2) topology.non_manifold.push_back(edge);
+    if (sides.size() != 2) return;
+    const TriangleSide& second = sides.back();
     if (first.forward == second.forward) topology.conflicting.push_back(edge);
     topology.neighbor[first.triangle][first.corner] = second.triangle;
     topology.neighbor[second.triangle][second.corner] = first.triangle;
-  }
+  });
   // Fans fall apart at non-manifold edges too, so pinched vertices matter only without those.
   if (topology.non_manifold.empty())
     topology.pinched = find_pinched(vertex_count, triangles, topology);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libvpm/model/solid.h"
@@ -26,6 +27,17 @@ struct TriangleSide {
 // triangle and corner.
 std::vector<TriangleSide> sorted_sides(std::size_t vertex_count,
                                        const std::vector<Triangle>& triangles);
+
+// Calls visit(sides) for each edge with all its sides, of those that sorted_sides() returns.
+template <class Visit>
+void for_edges(std::span<const TriangleSide> sorted, const Visit& visit) {
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    const TriangleSide& first = sorted[begin];
+    while (end < sorted.size() && sorted[end].low == first.low && sorted[end].high == first.high)
+      ++end;
+    visit(sorted.subspan(begin, end - begin));
+  }
+}
 
 // Returns the number of triangles with the vertices of an earlier one.
 std::size_t count_duplicates(std::vector<Triangle> triangles);

@@ -180,6 +180,7 @@ TEST(PairForce, IsNothingAtFlushSides) {
   }
 }
 
+// An enclosed solid is pushed toward the nearest face of the other.
 TEST(PairForce, ActsOnAnEnclosedSolid) {
   const auto a = surface(make_cube(.2), true), b = surface(make_cube(2), true);
   SolidPair pair(a, b);
