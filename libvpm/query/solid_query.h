@@ -1,5 +1,5 @@
-// Measures a tool against the solids of a scene, by the surfaces or the spheres of both
-// (libvpm/solid).
+// Measures a tool against the solids of a scene, by the surfaces of tool and solids or by their
+// spheres (libvpm/solid).
 #pragma once
 
 #include <vpm/query_types.h>
@@ -79,8 +79,8 @@ class SolidQuery {
   std::vector<std::optional<Pair>> pairs_;       // by the solids' places
 };
 
-// Measures by the spheres of both, as the measure as printed does. Refers to its tool, as
-// SolidQuery.
+// Measures a tool against the solids of a scene by the spheres of tool and solids, as the measure
+// as printed does. Keeps a reference to its tool.
 class SphereQuery {
  public:
   SphereQuery(const ToolModel& tool, const Level& level) : tree_{tool, level} {}

@@ -12,10 +12,10 @@ namespace vpm {
 namespace {
 
 constexpr int kGridCells = 64;
-// Depths below so many of the grid's cells are distances to the closest point, since the grid is
-// wrong by a cell or two near the surface. Within the next cells both are mixed, the deeper the
-// more the grid's, so that forces do not jump: at creases of the depth the grid is wrong
-// everywhere.
+// Where the grid tells a depth of fewer than kNearCells of its cells, the distance to the closest
+// point is taken instead, since the grid errs by a cell or two near the surface. Over the next
+// kMixedCells the depth goes over from that distance to the grid's, so that forces do not jump: at
+// creases of the depth the grid errs, however deep.
 constexpr double kNearCells = 1.5, kMixedCells = 0.25;
 
 // Returns a well-mixed number from 0 to 1 (the finaliser of MurmurHash3, public domain).

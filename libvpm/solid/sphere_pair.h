@@ -23,11 +23,12 @@ struct InnerSphereTree {
 // Scratch of one thread.
 class SpherePair {
  public:
-  // Walks down both hierarchies at poses that map the meshes to the world, and sums over all pairs
-  // of spheres what they share: its volume, and as force that volume along the line of centres.
-  // Tells neither area nor turn, closure or contacts. a and b swapped give the same bits, with
-  // signs of force and torque turned. `states` receives that of each of a's spheres, if there is
-  // room: inside where one of b's holds it, boundary where it shares volume with any.
+  // Returns what two packings share at poses that map their meshes to the world: summed over all
+  // pairs of a sphere of a and one of b, which a walk down both hierarchies finds, the shared
+  // volume and, as force, that volume along the line of centres. Tells neither area nor turn,
+  // closure or contacts. Swapping a and b gives the same bits, with opposite force and torque.
+  // `states` receives the state of each of a's spheres, if it has room: inside where a sphere of b
+  // holds it, boundary where it shares volume with any.
   SharedSolid measure(const InnerSphereTree& a, const Pose& pose_a, const InnerSphereTree& b,
                       const Pose& pose_b, std::span<SphereState> states = {});
 

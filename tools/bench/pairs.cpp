@@ -1,6 +1,6 @@
 // Measures one solid against another: the error of the volume, closure, jumps along a path, time at
-// contacts of 0, 5 and 30 % of the smaller solid, memory, and time to prepare. Beside it the
-// measure as printed, by spheres of both.
+// poses where both share 0, 5 and 30 % of the smaller solid, memory, and time to prepare. Measures
+// the same poses by the spheres of both solids, too, as --measure paper does.
 
 #include <algorithm>
 #include <cmath>

@@ -38,8 +38,9 @@ struct BatchState {
   unsigned done = 0;   // blocks that are done
 };
 
-// Holds what the blocks of one team share: by turns, since the last of them clears that of one pose
-// while others begin with the next. All 0 between launches.
+// Holds what the blocks of one team share, twice, for poses by turns: the last block to finish a
+// pose clears what it used while others already add to that of the next pose. All 0 between
+// launches.
 struct TeamState {
   RawResult results[2];
   RefinedCounters counters[2];
@@ -226,8 +227,8 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   answer_pose(launch, to_surface, sequence, team, shared);
 }
 
-// Answers one query after another in each team of some blocks, which take the next one as they are
-// done: a pose in clutter takes up to ten times as long as another.
+// Answers the poses of a batch by teams of several blocks. A team that has answered a pose takes
+// the next one that no team has: poses in clutter take very different times.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kFewBlocks)
     few_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,
@@ -292,7 +293,8 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   if (threadIdx.x == 0) *launch.state = BatchState{};
 }
 
-// Answers one query after another in each block, which takes the next one as it is done.
+// Answers the poses of a batch by single blocks. A block that has answered a pose takes the next
+// one that no block has.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     many_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,

@@ -153,8 +153,8 @@ class VPM_API SolidBody {
   // overlaps once: .2 s for 7000 triangles, 1 s for 86 000. `with_force` false leaves out what
   // forces need, which is most of that. Throws Error(refused) for a mesh without volume.
   explicit SolidBody(const SolidMesh& mesh, bool with_force = true);
-  // Prepares the surface that a tool model keeps, in its mesh's frame, and shares the model. The
-  // library vpm has this and all below. Throws Error(refused) for a model that keeps none.
+  // Prepares the surface of a tool model, in its mesh's frame; Measure::paper takes its spheres.
+  // This and all below is in the library vpm. Throws Error(refused) for a model without a surface.
   explicit SolidBody(const Tool& tool, bool with_force = true);
 
   // Returns the volume, m^3.
