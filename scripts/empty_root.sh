@@ -29,11 +29,12 @@ bootstrap() {
   timeout 900 debootstrap --variant=minbase bookworm "$root"
 }
 
-# Mounts what programs expect in a root: processes, and pseudo-terminals, for what asks whether somebody sits before it; its tests are
-# skipped without.
+# Mounts what programs expect in a root: processes; the kernel's settings, without which glibc takes no memory in large pages; and
+# pseudo-terminals, for what asks whether somebody sits before it, whose tests are skipped without.
 mount_in() {
   local root=$1
   mount -t proc proc "$root/proc" || return
+  mount -t sysfs -o ro sysfs "$root/sys" || true
   mkdir -p "$root/dev/pts"
   if mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"; then ln -sf pts/ptmx "$root/dev/ptmx"; fi
 }

@@ -97,21 +97,27 @@ PICTURES = {
 }
 
 
+def pictures(tools, example=None, quality=2):
+    """Yields (name, PNG) of each page. `quality` is the pixels drawn for one that is shown, along each side."""
+    with tempfile.TemporaryDirectory() as folder, headless_page.Browser() as browser:
+        make_pages(tools, folder, example)
+        for name, action in PICTURES.items():
+            page = browser.open(f"{folder}/{name}.html", 1120, 630)
+            page.evaluate(f"{action}; vpm.setQuality({quality})")
+            yield name, page.screenshot()
+            if page.faults:
+                sys.exit(f"view_pictures.py: {name}: {page.faults}")
+            page.close()
+
+
 def main():
     tools = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else REPOSITORY / "build/release/bin").resolve()
     output = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else REPOSITORY / "examples/pictures")
     if not headless_page.program():
         sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
     output.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder, headless_page.Browser() as browser:
-        make_pages(tools, folder, sys.argv[3] if len(sys.argv) > 3 else None)
-        for name, action in PICTURES.items():
-            page = browser.open(f"{folder}/{name}.html", 1120, 630)
-            page.evaluate(action)
-            page.evaluate("vpm.setQuality(2)")  # smooth edges, which a processor leaves out
-            save(page.screenshot(), output / f"{name}.png")
-            if page.faults:
-                sys.exit(f"view_pictures.py: {name}: {page.faults}")
+    for name, png in pictures(tools, sys.argv[3] if len(sys.argv) > 3 else None):  # smooth edges, which a processor leaves out
+        save(png, output / f"{name}.png")
 
 
 if __name__ == "__main__":

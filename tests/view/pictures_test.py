@@ -4,10 +4,10 @@
 usage: pictures_test.py BIN EXAMPLE     EXAMPLE: what make-example wrote; exit code 77: skipped, no Chromium, no drawing library or no Pillow
 """
 import importlib.util
+import io
 import pathlib
 import subprocess
 import sys
-import tempfile
 
 import matplotlib.image
 import numpy
@@ -18,12 +18,13 @@ import headless_page  # noqa: E402
 
 SQUARE = 10       # pixels: what is compared is the mean colour of squares, since fonts and edges differ between machines
 DIFFERENCE = 0.1  # of black and white
+NO_PAGES = 3      # exit code of a build that draws no pages
 MOST = 0.02       # of all squares may differ as much: a line of text that came, went or moved changes more
 
 
-def squares(path):
+def squares(file):
     """Returns the mean colours of the squares that the picture consists of, rows x columns x 3."""
-    picture = matplotlib.image.imread(path)[:, :, :3].astype(float)
+    picture = matplotlib.image.imread(file)[:, :, :3].astype(float)
     rows, columns = (length // SQUARE for length in picture.shape[:2])
     return picture[:rows * SQUARE, :columns * SQUARE].reshape(rows, SQUARE, columns, SQUARE, 3).mean(axis=(1, 3))
 
@@ -38,14 +39,14 @@ def main():
     if not headless_page.program() or not importlib.util.find_spec("PIL"):
         print("skipped: needs Chromium and Pillow (Debian: chromium, python3-pil)")
         return 77
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([sys.executable, REPOSITORY / "scripts/view_pictures.py", sys.argv[1], folder, sys.argv[2]],
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            print(done.stderr)
-            return 77 if "draws no pages" in done.stderr else 1
-        made = sorted(pathlib.Path(folder).glob("*.png"))
-        parts = {picture.name: differing(REPOSITORY / "examples/pictures" / picture.name, picture) for picture in made}
+    import view_pictures  # which needs Pillow
+    kept = REPOSITORY / "examples/pictures"
+    try:
+        parts = {f"{name}.png": differing(kept / f"{name}.png", io.BytesIO(png))
+                 for name, png in view_pictures.pictures(pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], quality=1)}
+    except subprocess.CalledProcessError as fault:
+        print(fault)
+        return 77 if fault.returncode == NO_PAGES else 1
     stale = {name: part for name, part in parts.items() if part > MOST}
     for name, part in stale.items():
         print(f"examples/pictures/{name}: {part:.1%} of it show something else today; make it again: scripts/view_pictures.py")

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -49,6 +50,7 @@ class Stack {
 // Names what a thread waits for.
 enum class Wait : std::uint8_t { none, exchange, vote, block };
 
+// Runs one thread of a block after another: it begins once, and waits for the next after each.
 struct Fiber {
   Stack stack;
   ucontext_t context{};  // where it begins; under AddressSanitizer, also where it goes on
@@ -64,7 +66,7 @@ struct Fiber {
 #endif
 };
 
-// Runs the threads of one block after another, on one thread of the host.
+// Runs the threads of one block after another, on one thread of the host at a time.
 class BlockRunner {
  public:
   void run(const Launch& launch, unsigned block, const std::function<void()>& kernel);
@@ -93,6 +95,7 @@ class BlockRunner {
 
  private:
   static void enter();
+  void begin(Fiber* fiber) const;
   void wait_in_warp(Wait wait, unsigned mask) {
     const unsigned lane = current_ % kLanes;
     if ((mask >> lane & 1U) == 0) fail("a lane is not in its own mask");
@@ -182,9 +185,11 @@ void BlockRunner::enter() {
 #if defined(__SANITIZE_ADDRESS__)
   __sanitizer_finish_switch_fiber(nullptr, &self.scheduler_stack_, &self.scheduler_bytes_);
 #endif
-  (*self.kernel_)();
-  self.end_thread();
-  std::abort();  // an ended fiber is never resumed
+  for (;;) {
+    (*self.kernel_)();
+    self.end_thread();
+    self.suspend();  // until a later block has a thread for it
+  }
 }
 
 void BlockRunner::end_thread() {
@@ -199,12 +204,14 @@ void BlockRunner::end_thread() {
       release_warp(warp, other.mask);
   }
   if (done_ < threads_ && at_barrier_ > 0) release_block();
-#if defined(__SANITIZE_ADDRESS__)
-  __sanitizer_start_switch_fiber(nullptr, scheduler_stack_, scheduler_bytes_);
-  setcontext(&scheduler_);
-#else
-  _longjmp(scheduler_place_, 1);
-#endif
+}
+
+void BlockRunner::begin(Fiber* fiber) const {
+  getcontext(&fiber->context);
+  fiber->context.uc_stack.ss_sp = fiber->stack.memory();
+  fiber->context.uc_stack.ss_size = Stack::kBytes;
+  fiber->context.uc_link = nullptr;
+  makecontext(&fiber->context, &BlockRunner::enter, 0);
 }
 
 void BlockRunner::resume(unsigned thread) {
@@ -246,16 +253,13 @@ void BlockRunner::run(const Launch& launch, unsigned block, const std::function<
   gridDim = dim3(launch.blocks);
   shared_memory_.resize((launch.shared_bytes + 7) / 8);
   warps_.assign((threads_ + kLanes - 1) / kLanes, Warp{});
-  while (fibers_.size() < threads_) fibers_.push_back(std::make_unique<Fiber>());
+  while (fibers_.size() < threads_) {
+    fibers_.push_back(std::make_unique<Fiber>());
+    begin(fibers_.back().get());
+  }
   for (unsigned t = 0; t < threads_; ++t) {
-    Fiber& fiber = *fibers_[t];
-    fiber.is_done = fiber.has_begun = false;
-    fiber.wait = Wait::none;
-    getcontext(&fiber.context);
-    fiber.context.uc_stack.ss_sp = fiber.stack.memory();
-    fiber.context.uc_stack.ss_size = Stack::kBytes;
-    fiber.context.uc_link = nullptr;
-    makecontext(&fiber.context, &BlockRunner::enter, 0);
+    fibers_[t]->is_done = false;
+    fibers_[t]->wait = Wait::none;
   }
   while (done_ < threads_) {
     bool has_moved = false;
@@ -271,17 +275,43 @@ void BlockRunner::run(const Launch& launch, unsigned block, const std::function<
   runner = nullptr;
 }
 
+// Runners that are idle keep their stacks: to take and give back the pages of a block's threads
+// costs as much as many kernels.
+class IdleRunners {
+ public:
+  std::unique_ptr<BlockRunner> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<BlockRunner>();
+    std::unique_ptr<BlockRunner> last = std::move(idle_.back());
+    idle_.pop_back();
+    return last;
+  }
+  void give_back(std::unique_ptr<BlockRunner> blocks) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(blocks));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BlockRunner>> idle_;
+};
+
+// Runs every `step`-th block of a launch from `first` on.
+void run_blocks(const Launch& launch, unsigned first, unsigned step,
+                const std::function<void()>& kernel) {
+  static IdleRunners idle;
+  std::unique_ptr<BlockRunner> blocks = idle.take();
+  for (unsigned b = first; b < launch.blocks; b += step) blocks->run(launch, b, kernel);
+  idle.give_back(std::move(blocks));
+}
+
 }  // namespace
 
 void run(const Launch& launch, const std::function<void()>& kernel) {
-  const unsigned side_by_side = launch.is_cooperative ? launch.blocks : 1;
+  if (!launch.is_cooperative) return run_blocks(launch, 0, 1, kernel);
   std::vector<std::thread> threads;
-  for (unsigned first = 0; first < side_by_side; ++first) {
-    threads.emplace_back([&, first] {
-      BlockRunner blocks;
-      for (unsigned b = first; b < launch.blocks; b += side_by_side) blocks.run(launch, b, kernel);
-    });
-  }
+  for (unsigned block = 0; block < launch.blocks; ++block)
+    threads.emplace_back([&, block] { run_blocks(launch, block, launch.blocks, kernel); });
   for (std::thread& thread : threads) thread.join();
 }
 

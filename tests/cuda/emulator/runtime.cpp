@@ -14,6 +14,10 @@
 
 namespace emulator {
 
+// Time that a question whether work has ended waits for it: callers ask again and again, and take
+// the processor from the device otherwise, which here is threads of the host.
+constexpr std::chrono::milliseconds kPatience{1};
+
 class Stream {
  public:
   Stream() : thread_([this] { work(); }) {}
@@ -31,9 +35,9 @@ class Stream {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return queue_.empty(); });
   }
-  bool is_idle() {
-    const std::lock_guard lock(mutex_);
-    return queue_.empty();
+  bool is_idle_soon() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kPatience, [&] { return queue_.empty(); });
   }
 
  private:
@@ -74,9 +78,9 @@ struct EventState {
   unsigned recorded = 0, happened = 0;
   std::chrono::steady_clock::time_point time;
 
-  bool has_happened() {
-    const std::lock_guard lock(mutex);
-    return happened == recorded;
+  bool has_happened_soon() {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, kPatience, [&] { return happened == recorded; });
   }
   void wait_for(unsigned record) {
     std::unique_lock lock(mutex);
@@ -157,9 +161,7 @@ cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
   return cudaSuccess;
 }
 cudaError_t cudaStreamQuery(cudaStream_t stream) {
-  if (stream == nullptr || stream->is_idle()) return cudaSuccess;
-  std::this_thread::yield();
-  return cudaErrorNotReady;
+  return stream == nullptr || stream->is_idle_soon() ? cudaSuccess : cudaErrorNotReady;
 }
 cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event) {
   emulator::enqueue(stream, [state = event->state, record = event->state->last_record()] {
@@ -196,7 +198,7 @@ cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
   return cudaSuccess;
 }
 cudaError_t cudaEventQuery(cudaEvent_t event) {
-  return event->state->has_happened() ? cudaSuccess : cudaErrorNotReady;
+  return event->state->has_happened_soon() ? cudaSuccess : cudaErrorNotReady;
 }
 cudaError_t cudaEventSynchronize(cudaEvent_t event) {
   event->state->wait_for(event->state->last_record());

@@ -19,5 +19,5 @@ frame2.pgm 1 10 1.00
 2> vpm-query: error: cannot write steps.csv: File too large
 
 # Where in the recording the large cube is hit first, for a script.
-$ tail -n +2 steps.csv | awk -F, '$3 == 0 && $7 > 0.01 { print $4, $5; exit }'
+$ awk -F, 'NR > 1 && $3 == 0 && $7 > 0.01 { print $4, $5; exit }' steps.csv
 1.0 frame1.pgm
