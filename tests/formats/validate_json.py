@@ -2,13 +2,16 @@
 """Checks JSON files against a schema of formats/schemas.
 
     validate_json.py SCHEMA FILE...
+    validate_json.py --serve SOCKET     answers ask_to_validate.py, until it is killed
 
 SCHEMA is a file, or the name of a schema in formats/schemas without ".json". A FILE that ends in
 .jsonl is checked line by line; "-" is JSON Lines on standard input. Prints each fault. Exit status: 0 if all
 are valid, 1 otherwise, 2 if python3-jsonschema is missing.
 """
 import json
+import os
 import pathlib
+import socket
 import sys
 
 try:
@@ -38,15 +41,14 @@ def documents(name):
     return [(f"{name}:{number}", line) for number, line in enumerate(text.splitlines(), 1)]
 
 
-def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    path = pathlib.Path(sys.argv[1])
+def check(schema_name, names):
+    """Prints the faults of the files; returns the exit status."""
+    path = pathlib.Path(schema_name)
     schema = strict((path if path.suffix == ".json" else SCHEMAS / f"{path}.json").read_text())
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
     faults = 0
-    for name in sys.argv[2:]:
+    for name in names:
         for place, text in documents(name):
             try:
                 found = [f"{'/'.join(map(str, e.absolute_path)) or 'document'}: {e.message}"
@@ -56,7 +58,37 @@ def main():
             for fault in found:
                 print(f"{place}: {fault}")
             faults += len(found)
-    sys.exit(1 if faults else 0)
+    return 1 if faults else 0
+
+
+def serve(address):
+    """Runs each check in a fork, with the streams and in the folder of who asks."""
+    listener = socket.socket(socket.AF_UNIX)
+    listener.bind(address)
+    listener.listen()
+    print("ready", flush=True)
+    while True:
+        client, _ = listener.accept()
+        message, handles, _, _ = socket.recv_fds(client, 1 << 16, 4)
+        child = os.fork()
+        if child == 0:
+            for stream, handle in enumerate(handles[:3]):
+                os.dup2(handle, stream)
+            os.fchdir(handles[3])
+            schema, *names = message.decode().split("\0")
+            sys.exit(check(schema, names))
+        client.send(bytes([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])]))
+        for handle in handles:
+            os.close(handle)
+        client.close()
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    if sys.argv[1] == "--serve":
+        serve(sys.argv[2])
+    sys.exit(check(sys.argv[1], sys.argv[2:]))
 
 
 if __name__ == "__main__":

@@ -162,10 +162,17 @@ class Tools:
     def __init__(self, bin_folders, folder):
         self.folder = folder
         self.environment = dict(os.environ, LC_ALL="C", PATH=bin_folders + ":" + os.environ["PATH"])
+        self.done = {}  # by command
         self.met = {}  # what each refused command said
         self.lacks_formats = False
 
     def run(self, command):
+        """Runs a command, or returns what it did before."""
+        if command not in self.done:
+            self.done[command] = self.run_anew(command)
+        return self.done[command]
+
+    def run_anew(self, command):
         for path in self.folder.glob("out*"):
             if path.is_file():
                 path.unlink()
@@ -179,11 +186,10 @@ class Tools:
         return done.stdout
 
     def said(self, command):
-        """Returns the exit status and messages of a command, which is run once."""
-        if command not in self.met:
-            done = self.run(command)
-            self.met[command] = (done.returncode, done.stderr)
-        return self.met[command]
+        """Returns the exit status and messages of a command."""
+        done = self.run(command)
+        self.met[command] = done.stderr
+        return done.returncode, done.stderr
 
 
 def last_volume(text):
@@ -282,7 +288,7 @@ def main():
         chosen = [row for row in rows(volumes) if not options.row or options.row in str(row)]
         faults = [fault for row in chosen for fault in row_faults(tools, *row)]
         if not options.row and not tools.lacks_formats:
-            faults += untried_faults("\n".join(said for _, said in tools.met.values()))
+            faults += untried_faults("\n".join(tools.met.values()))
     print("\n".join(faults))
     sys.exit(1 if faults else 0)
 

@@ -13,12 +13,13 @@ commands of the transcript share. The lines after it are the expected output:
 Plain lines are standard output, "2> " marks standard error, "[N]" an exit status other than 0. A
 line that ends in " (glob)" is a pattern of fnmatch. Lines that start with "#" are comments. The
 commands find the tools on PATH, the repository in $SOURCE, and schemas are checked by
-`$VALIDATE SCHEMA FILE` (tests/formats/validate_json.py).
+`$VALIDATE SCHEMA FILE` (tests/formats/ask_to_validate.py).
 
 --renew writes the present output into the transcripts; patterns that still match stay.
 Exit status: 0 if all agree, 1 otherwise.
 """
 import argparse
+import contextlib
 import difflib
 import fnmatch
 import os
@@ -78,10 +79,26 @@ def renewed(expected, actual):
     return lines
 
 
-def check(case, environment, renew):
-    steps, rest = parse(case.read_text())
-    good, text = True, []
+@contextlib.contextmanager
+def validation_server(environment):
+    """Serves `$VALIDATE`: names its socket in the environment."""
     with tempfile.TemporaryDirectory() as folder:
+        environment["VALIDATION_SOCKET"] = f"{folder}/socket"
+        with subprocess.Popen([SOURCE / "tests/formats/validate_json.py", "--serve", f"{folder}/socket"],
+                              stdout=subprocess.PIPE) as server:
+            server.stdout.readline()
+            try:
+                yield
+            finally:
+                server.kill()
+
+
+def check(case, environment, renew):
+    whole = case.read_text()
+    steps, rest = parse(whole)
+    good, text = True, []
+    with tempfile.TemporaryDirectory() as folder, \
+         validation_server(environment) if "$VALIDATE" in whole else contextlib.nullcontext():
         for before, command, expected in steps:
             actual = run(command, folder, environment)
             text += before + ["$ " + command] + renewed(expected, actual)
@@ -104,7 +121,7 @@ def main():
     parser.add_argument("cases", nargs="+", type=pathlib.Path)
     options = parser.parse_args()
     environment = dict(os.environ, LC_ALL="C", SOURCE=str(SOURCE),
-                       VALIDATE=str(SOURCE / "tests/formats/validate_json.py"),
+                       VALIDATE=str(SOURCE / "tests/formats/ask_to_validate.py"),
                        PATH=options.bin + ":" + os.environ["PATH"])
     results = [check(case, environment, options.renew) for case in options.cases]
     sys.exit(0 if all(results) else 1)
