@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "libvpm/core/error.h"
 
@@ -45,6 +46,12 @@ class ByteCursor {
     std::ranges::copy(take(sizeof(Number)), bytes.begin());
     if (big_endian_) std::ranges::reverse(bytes);
     return std::bit_cast<Number>(bytes);
+  }
+
+  std::vector<double> numbers(std::size_t count) {
+    std::vector<double> numbers;
+    while (numbers.size() < count) numbers.push_back(number<double>());
+    return numbers;
   }
 
   // Takes what stands behind its length.

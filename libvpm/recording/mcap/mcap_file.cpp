@@ -170,20 +170,17 @@ Remarks File::scan(const std::function<void(const Message&)>& see) const try {
     if (!is_cut || kind == Kind::chunk) at = body + there;
   }
   Remarks remarks;
-  const auto remark = [&](bool is_warning, const std::string& text) {
-    remarks.push_back({is_warning, text});
-  };
   if (scan.damaged > 0)
-    remark(true,
-           "chunks or records that are damaged, or contradict others, and are left out with "
-           "all that they hold: " +
-               std::to_string(scan.damaged));
+    remarks.push_back({true,
+                       "chunks or records that are damaged, or contradict others, and are left "
+                       "out with all that they hold: " +
+                           std::to_string(scan.damaged)});
   if (!has_end)
-    remark(true,
-           "it has no end, as where its recorder was stopped: it is read as far as it goes, " +
-               std::to_string(at) + " of " + std::to_string(size_) + " bytes");
+    remarks.push_back(
+        {true, "it has no end, as where its recorder was stopped: it is read as far as it goes, " +
+                   std::to_string(at) + " of " + std::to_string(size_) + " bytes"});
   else if (!has_index)
-    remark(false, "it has no index, and is read from its start");
+    remarks.push_back({false, "it has no index, and is read from its start"});
   return remarks;
 } catch (const Error& fault) {
   throw Error(fault.kind(), fault.problem(), path_, fault.hint());

@@ -1,15 +1,15 @@
 #include "libvpm/recording/mcap/messages.h"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "libvpm/file/text.h"
 #include "libvpm/import/scan_facts.h"
+#include "libvpm/recording/pose_line.h"
+#include "libvpm/recording/pose_numbers.h"
 
 namespace vpm::mcap {
 namespace {
 
-constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
 constexpr std::size_t kConfiguration = 12;  // bytes before the PNG of a compressedDepth, for floats
 
 std::string read_frame(ByteCursor& cursor) {
@@ -38,38 +38,20 @@ std::vector<std::byte> array_of(ByteCursor& cursor) {
     throw Damage("an image of " + std::to_string(width) + " x " + std::to_string(height) +
                  " pixels in rows of " + std::to_string(step) + " bytes is not in its " +
                  std::to_string(data.size()) + " bytes: the message is damaged");
-  char start[128];  // of NumPy's version 1.0: magic, length of what follows, its dictionary
-  const int length = std::snprintf(
-      start, sizeof start,
-      "\x93NUMPY\x01%c\x76%c{'descr': '%c%s', 'fortran_order': False, 'shape': (%lu, %lu)}", 0, 0,
-      is_big_endian ? '>' : '<', are_floats ? "f4" : "u2", height, width);
-  std::fill(start + length, std::end(start), ' ');
-  start[sizeof start - 1] = '\n';
-  std::vector<std::byte> array(sizeof start + row * height);
+  using namespace std::string_literals;
+  std::string start = "\x93NUMPY\1\0v\0{'descr': '"s + (is_big_endian ? ">" : "<") +
+                      (are_floats ? "f4" : "u2") + "', 'fortran_order': False, 'shape': (" +
+                      std::to_string(height) + ", " + std::to_string(width) + ")}";
+  start.resize(127, ' ');
+  start += '\n';
+  std::vector<std::byte> array(start.size() + row * height);
   auto to = std::ranges::copy(std::as_bytes(std::span(start)), array.begin()).out;
   for (std::uint64_t v = 0; v < height; ++v)
     to = std::ranges::copy(data.subspan(v * step, row), to).out;
   return array;
 }
 
-template <std::size_t count>
-std::array<double, count> read_numbers(ByteCursor& cursor) {
-  std::array<double, count> numbers;
-  for (double& number : numbers) number = cursor.number<double>();
-  return numbers;
-}
-
 }  // namespace
-
-std::string seconds_text(std::uint64_t nanoseconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%lu.%09lu", nanoseconds / kSecond, nanoseconds % kSecond);
-  return text;
-}
-
-double seconds_of(std::uint64_t nanoseconds) {
-  return *file::to_number(seconds_text(nanoseconds));
-}
 
 ImageKind read_image_kind(const std::string& type, Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
@@ -100,11 +82,9 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
   read_header(cursor);
   const std::uint32_t height = next(), width = next();
   cursor.text();  // the model of the distortion
-  std::vector<double> distortion(std::min<std::size_t>(next(), cursor.left() / sizeof(double)));
-  for (double& number : distortion) number = cursor.number<double>();
-  nlohmann::json lists{{"d", distortion}};
-  for (const char* const key : {"k", "r"}) lists[key] = read_numbers<9>(cursor);
-  lists["p"] = read_numbers<12>(cursor);
+  nlohmann::json lists{{"d", cursor.numbers(next())}};
+  for (const auto& [key, count] : {std::pair{"k", 9}, {"r", 9}, {"p", 12}})
+    lists[key] = cursor.numbers(count);
   const std::string text = lists.dump();
   const std::uint32_t across = std::max(1U, next()), down = std::max(1U, next());  // binning
   const std::uint32_t left = next(), top = next(), rows = next(), columns = next();
@@ -123,23 +103,16 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name) {
 
 StampedPose read_pose(Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
-  return {read_header(cursor), {}, read_numbers<7>(cursor)};
+  return {read_header(cursor), {}, cursor.numbers(kQuaternionPose)};
 }
 
 std::vector<StampedPose> read_transforms(Bytes message) {
   ByteCursor cursor = ByteCursor::of_message(message);
   std::vector<StampedPose> transforms;
   for (auto left = cursor.number<std::uint32_t>(); left > 0; --left)
-    transforms.push_back({read_header(cursor), read_frame(cursor), read_numbers<7>(cursor)});
+    transforms.push_back(
+        {read_header(cursor), read_frame(cursor), cursor.numbers(kQuaternionPose)});
   return transforms;
-}
-
-std::string pose_line(const std::string& time, const std::array<double, 7>& numbers) {
-  std::string line = time;
-  char text[32];
-  for (const double number : numbers)
-    line.append(text, std::snprintf(text, sizeof text, " %.17g", number));
-  return line + "\n";
 }
 
 }  // namespace vpm::mcap

@@ -2,7 +2,6 @@
 // Damage for messages that contradict themselves.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,6 @@ struct Header {
   std::uint64_t time = 0;  // ns, on the clock of who wrote it; 0 if it was not set
   std::string frame;       // of TF
 };
-// Returns a time in seconds, with all its digits: "1700000000.123456789".
-std::string seconds_text(std::uint64_t nanoseconds);
-// Returns the number that this text stands for, so that a time is the same however it is given.
-double seconds_of(std::uint64_t nanoseconds);
 
 // Tells of an image all but its pixels. The coding is how its message names what a pixel holds:
 // "16UC1", or "16UC1; compressedDepth png".
@@ -45,12 +40,10 @@ IntrinsicsFile read_camera_info(Bytes message, const std::string& name);
 
 struct StampedPose {
   Header header;
-  std::string child;                // of TF: the frame whose pose in header.frame it is
-  std::array<double, 7> numbers{};  // tx, ty, tz, qx, qy, qz, qw; not checked
+  std::string child;            // of TF: the frame whose pose in header.frame it is
+  std::vector<double> numbers;  // tx, ty, tz, qx, qy, qz, qw; not checked
 };
 StampedPose read_pose(Bytes message);
 std::vector<StampedPose> read_transforms(Bytes message);
-// Returns a line "time tx ty tz qx qy qz qw", as files of poses have it.
-std::string pose_line(const std::string& time, const std::array<double, 7>& numbers);
 
 }  // namespace vpm::mcap

@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "libvpm/file/text.h"
-#include "libvpm/recording/mcap/frame_tree.h"
 #include "libvpm/recording/mcap/mcap_file.h"
 #include "libvpm/recording/mcap/messages.h"
+#include "libvpm/recording/pose_line.h"
+#include "libvpm/recording/pose_numbers.h"
+#include "libvpm/recording/transform_tree.h"
 
 namespace vpm::mcap {
 namespace {
@@ -110,6 +112,18 @@ void find_intrinsics(const std::map<std::string, std::vector<std::byte>>& infos,
   }
 }
 
+// Passes over numbers that are no pose, as trackers write them where they are lost.
+void take_transforms(const Message& message, TransformTree& tree) {
+  const bool are_fixed = message.channel.topic.ends_with("tf_static");
+  for (const auto& [header, child, numbers] : read_transforms(message.bytes)) {
+    try {
+      tree.add(child, header.frame, from_untimed(numbers, nullptr), time_of(header, message),
+               are_fixed);
+    } catch (const Error&) {  // the numbers are no pose
+    }
+  }
+}
+
 }  // namespace
 
 Frames read_frames(const std::string& recording, const std::string& topic) {
@@ -129,7 +143,7 @@ Frames read_frames(const std::string& recording, const std::string& topic) {
                         "`topic` ", recording, frames.remarks);
   const Images& of_topic = images.at(frames.topic);
   for (const auto& [time, read] : of_topic.read)
-    frames.frames.push_back({seconds_of(time), seconds_text(time), read});
+    frames.frames.push_back({in_seconds(time), seconds_text(time), read});
   frames.camera_frame = of_topic.frame;
   frames.is_camera_placed = placed.contains(frames.camera_frame);
   const std::size_t end =
@@ -156,14 +170,12 @@ std::optional<PosesName> poses_name(const std::string& text) {
 Poses read_poses(const PosesName& name) {
   const auto& [recording, wanted] = name;
   Topics topics;
-  FrameTree tree;
+  TransformTree tree;
   std::map<std::string, std::map<std::uint64_t, StampedPose>> found;
   Poses poses;
   poses.remarks = scan(recording, topics, [&](const Message& message, const auto&, auto& topic) {
     const std::string& type = message.channel.type;
-    if (type == kTransforms)
-      for (const StampedPose& pose : read_transforms(message.bytes))
-        tree.add(pose, time_of(pose.header, message), message.channel.topic.ends_with("tf_static"));
+    if (type == kTransforms) take_transforms(message, tree);
     if (type != kPoseStamped) return;
     StampedPose pose = read_pose(message.bytes);
     auto& of_topic = found[message.channel.topic];

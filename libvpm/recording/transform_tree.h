@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/recording/mcap/messages.h"
+#include "libvpm/core/pose.h"
 
-namespace vpm::mcap {
+namespace vpm {
 
 // Poses of a frame in another one.
 struct FrameMotion {
@@ -17,12 +17,12 @@ struct FrameMotion {
   std::string world;  // the other frame
 };
 
-class FrameTree {
+class TransformTree {
  public:
-  // Adds a pose of `pose.child` in another frame at a time, ns; of several with one time the first
-  // counts. A frame of which all poses are fixed stands still at the last of them. Passes over
-  // numbers that are no pose, as trackers write them where they are lost.
-  void add(const StampedPose& pose, std::uint64_t time, bool is_fixed);
+  // Adds a pose of a frame in its parent at a time, ns; of several with one time the first counts.
+  // A frame of which all poses are fixed stands still at the last of them.
+  void add(const std::string& frame, const std::string& parent, const Pose& pose,
+           std::uint64_t time, bool is_fixed);
 
   // Returns the poses in `world`, or in the frame without a parent if that is empty: at the times
   // of all links between them, each interpolated, as far as all have poses. Throws Error(refused),
@@ -43,4 +43,4 @@ class FrameTree {
   std::map<std::string, Link> links_;  // by the frame whose pose they are
 };
 
-}  // namespace vpm::mcap
+}  // namespace vpm

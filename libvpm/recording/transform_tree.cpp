@@ -1,15 +1,16 @@
-#include "libvpm/recording/mcap/frame_tree.h"
+#include "libvpm/recording/transform_tree.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <set>
 #include <utility>
 
-#include "libvpm/core/pose.h"
+#include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/pose_line.h"
 #include "libvpm/recording/timed_path.h"
 
-namespace vpm::mcap {
+namespace vpm {
 namespace {
 
 constexpr const char* kCure = "name frames that it connects, or give the poses in a file";
@@ -26,7 +27,7 @@ TimedPath path_of(const std::map<std::uint64_t, Pose>& poses, bool is_fixed) {
   std::vector<double> times;
   std::vector<Pose> at;
   for (auto pose = is_fixed ? std::prev(poses.end()) : poses.begin(); pose != poses.end(); ++pose) {
-    times.push_back(seconds_of(pose->first));
+    times.push_back(in_seconds(pose->first));
     at.push_back(pose->second);
   }
   return {std::move(times), std::move(at)};
@@ -34,22 +35,17 @@ TimedPath path_of(const std::map<std::uint64_t, Pose>& poses, bool is_fixed) {
 
 }  // namespace
 
-void FrameTree::add(const StampedPose& pose, std::uint64_t time, bool is_fixed) {
-  const auto& [header, child, n] = pose;
-  if (!std::isfinite(n[0] + n[1] + n[2])) return;
-  try {
-    const Rotation rotation = rotation_from_quaternion({n[3], n[4], n[5], n[6]});
-    Link& link = links_[child];
-    if (!link.poses.empty() && link.parent != header.frame) link.other_parent = link.parent;
-    link.parent = header.frame;
-    link.is_fixed = link.is_fixed && is_fixed;
-    link.poses.emplace(time, Pose{rotation, {n[0], n[1], n[2]}});
-  } catch (const Error&) {  // the numbers are no rotation
-  }
+void TransformTree::add(const std::string& frame, const std::string& parent, const Pose& pose,
+                        std::uint64_t time, bool is_fixed) {
+  Link& link = links_[frame];
+  if (!link.poses.empty() && link.parent != parent) link.other_parent = link.parent;
+  link.parent = parent;
+  link.is_fixed = link.is_fixed && is_fixed;
+  link.poses.emplace(time, pose);
 }
 
-std::vector<std::string> FrameTree::ancestry(const std::string& frame,
-                                             const std::string& place) const {
+std::vector<std::string> TransformTree::ancestry(const std::string& frame,
+                                                 const std::string& place) const {
   std::vector<std::string> frames{frame};
   for (auto link = links_.find(frame); link != links_.end(); link = links_.find(frames.back())) {
     const auto& [parent, other, is_fixed, poses] = link->second;
@@ -64,8 +60,8 @@ std::vector<std::string> FrameTree::ancestry(const std::string& frame,
   return frames;
 }
 
-FrameMotion FrameTree::motion(const std::string& frame, const std::string& world,
-                              const std::string& place) const {
+FrameMotion TransformTree::motion(const std::string& frame, const std::string& world,
+                                  const std::string& place) const {
   std::vector<std::string> below = ancestry(frame, place);
   FrameMotion motion{"", world.empty() ? below.back() : world};
   std::vector<std::string> above = ancestry(motion.world, place);
@@ -100,12 +96,12 @@ FrameMotion FrameTree::motion(const std::string& frame, const std::string& world
     const Pose pose = relative_to(pose_at(down, time), pose_at(up, time));
     const Quaternion q = quaternion_from_rotation(pose.rotation);
     const Vec3& t = pose.translation;
-    motion.lines += pose_line(text, {t.x, t.y, t.z, q.x, q.y, q.z, q.w});
+    motion.lines += pose_line(text, std::array{t.x, t.y, t.z, q.x, q.y, q.z, q.w});
   };
   if (times.empty()) add("", 0);
   for (const std::uint64_t time : times)
-    if (time >= from && time <= to) add(seconds_text(time), seconds_of(time));
+    if (time >= from && time <= to) add(seconds_text(time), in_seconds(time));
   return motion;
 }
 
-}  // namespace vpm::mcap
+}  // namespace vpm
