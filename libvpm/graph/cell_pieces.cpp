@@ -277,7 +277,7 @@ class GapCutter {
 
 void cut_gap(VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces) {
-  const std::uint32_t begin = cells.gap_begin[sphere], end = cells.gap_begin[sphere + 1];
+  const std::uint32_t begin = cells.gap.begin[sphere], end = cells.gap.begin[sphere + 1];
   if (begin == end || !(cells.gap_scale > 0)) return;
   GapCutter(cells.gap, cells.gap_scale, center, size, pieces)
       .cut(std::span(cells.gap.segments).subspan(begin, end - begin));

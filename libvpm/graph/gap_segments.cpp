@@ -5,6 +5,7 @@
 #include <compare>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -401,12 +402,15 @@ GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double s
           RowCutter(lattice, bvh, nearest, length, static_cast<std::uint32_t>(row)).cut(rows);
     }
   });
-  GapSegments gap{lattice.axis, lattice.dv, lattice.du, {}};
-  std::size_t count = 0;
-  for (const std::vector<GapSegment>& segments : of_row) count += segments.size();
-  gap.segments.reserve(count);
+  GapSegments gap{lattice.axis, lattice.dv, lattice.du, {}, {}};
+  gap.begin.assign(bvh.spheres().size() + 1, 0);
+  for (const std::vector<GapSegment>& segments : of_row)
+    for (const GapSegment& s : segments) ++gap.begin[s.sphere + 1];
+  std::partial_sum(gap.begin.begin(), gap.begin.end(), gap.begin.begin());
+  std::vector<std::uint32_t> next(gap.begin.begin(), gap.begin.end() - 1);
+  gap.segments.resize(gap.begin.back());
   for (std::vector<GapSegment>& segments : of_row) {
-    gap.segments.insert(gap.segments.end(), segments.begin(), segments.end());
+    for (const GapSegment& s : segments) gap.segments[next[s.sphere]++] = s;
     segments = {};
   }
   return gap;

@@ -13,18 +13,6 @@ namespace {
 constexpr double kVolumeTolerance = 1e-9;
 constexpr std::size_t kGrain = 256;
 
-// Sorts segments by sphere (counting sort), keeping the order of lines.
-void group_by_sphere(std::size_t spheres, VoronoiCells& cells) {
-  std::vector<GapSegment>& segments = cells.gap.segments;
-  cells.gap_begin.assign(spheres + 1, 0);
-  for (const GapSegment& s : segments) ++cells.gap_begin[s.sphere + 1];
-  for (std::size_t i = 0; i < spheres; ++i) cells.gap_begin[i + 1] += cells.gap_begin[i];
-  std::vector<std::uint32_t> next(cells.gap_begin.begin(), cells.gap_begin.end() - 1);
-  std::vector<GapSegment> grouped(segments.size());
-  for (const GapSegment& s : segments) grouped[next[s.sphere]++] = s;
-  segments = std::move(grouped);
-}
-
 // Neumaier's sum: many equal terms round the same way, and volumes must sum to 1e-12.
 class CompensatedSum {
  public:
@@ -48,8 +36,7 @@ struct GapPart {
 GapPart gap_of(const VoronoiCells& cells, Vec3 center, std::size_t i) {
   GapPart part;
   CompensatedSum sum;
-  for (std::uint32_t k = cells.gap_begin[i]; k < cells.gap_begin[i + 1]; ++k) {
-    const GapSegment& s = cells.gap.segments[k];
+  for (const GapSegment& s : cells.gap.of(i)) {
     const double v = cells.gap_scale * cells.gap.volume(s);
     sum.add(v);
     part.moment += v * (s.center - center);
@@ -60,8 +47,7 @@ GapPart gap_of(const VoronoiCells& cells, Vec3 center, std::size_t i) {
 
 double bounding_radius_of(const VoronoiCells& cells, const Sphere& sphere, std::size_t i) {
   double radius = sphere.radius;
-  for (std::uint32_t k = cells.gap_begin[i]; k < cells.gap_begin[i + 1]; ++k) {
-    const GapSegment& s = cells.gap.segments[k];
+  for (const GapSegment& s : cells.gap.of(i)) {
     const Vec3 apart = s.center - sphere.center, half = cells.gap.half_extent(s);
     radius = std::max(radius, norm({std::abs(apart.x) + half.x, std::abs(apart.y) + half.y,
                                     std::abs(apart.z) + half.z}));
@@ -104,8 +90,7 @@ VoronoiCells find_voronoi_cells(const Solid& solid, const MassProperties& mass,
   }
   const double gap_volume = std::max(0.0, mass.volume - balls);
 
-  VoronoiCells cells{find_gap_segments(solid, bvh, spacing), {}, 0, {}, {}, {}, {}};
-  group_by_sphere(spheres.size(), cells);
+  VoronoiCells cells{find_gap_segments(solid, bvh, spacing), 0, {}, {}, {}, {}};
   CompensatedSum sampled_sum;
   for (const GapSegment& s : cells.gap.segments) sampled_sum.add(cells.gap.volume(s));
   const double sampled = sampled_sum.value();

@@ -25,9 +25,8 @@ struct VoronoiQuality {
 
 // Cells by sphere, in normalised coordinates.
 struct VoronoiCells {
-  GapSegments gap;                       // segments sorted by sphere, centres shifted
-  std::vector<std::uint32_t> gap_begin;  // row offsets; spheres + 1 entries
-  double gap_scale = 0;                  // a segment's volume in the cell / volume of its prism
+  GapSegments gap;       // centres shifted
+  double gap_scale = 0;  // a segment's volume in the cell / volume of its prism
   std::vector<double> volume;
   std::vector<Vec3> centroid;
   // Largest distance of a cell's points from its sphere's centre; at least the sphere's radius.

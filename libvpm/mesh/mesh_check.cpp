@@ -380,6 +380,10 @@ class Check {
 
   // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
+    if (contacts_.empty() && facts().shells == 1) {  // all of it bounds
+      facts().volume = result_.enclosure.volume = mass_properties(result_.solid).volume;
+      return;
+    }
     const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1));
     std::size_t shell_count = 0;
     const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);

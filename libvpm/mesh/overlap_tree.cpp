@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/mesh/halving.h"
 
 namespace vpm {
 namespace {
@@ -28,7 +29,7 @@ struct OverlapTree::Build {
   // Item, or run of items of one family, with the middle by which it is sorted.
   struct Sorted {
     Vec3 middle;
-    std::uint32_t item;            // the first one of a run
+    std::uint32_t index;           // of the item, the first one of a run
     std::uint32_t begin, end = 0;  // bounds of a run
   };
 
@@ -36,9 +37,10 @@ struct OverlapTree::Build {
   const std::vector<Item>& items;
   std::vector<Sorted> order;
 
-  const Item& at(std::size_t k) const { return items[order[k].item]; }
+  const Item& at(std::size_t k) const { return items[order[k].index]; }
 
   Build(OverlapTree& of, const std::vector<Item>& all) : tree(of), items(all) {
+    order.reserve(items.size());
     for (std::uint32_t k = 0; k < items.size(); ++k) {
       const auto& [a, b, c] = items[k].points;
       order.push_back({(a + b + c) / 3, k, k});
@@ -46,51 +48,32 @@ struct OverlapTree::Build {
   }
 
   // Puts items of a family side by side, and families near each other: each family is a subtree of
-  // its own, and all items without one are one more run. Returns where the runs end.
-  std::vector<std::size_t> sort_families() {
+  // its own, and all items without one are one more run. Orders the items of each run for its
+  // subtree. Returns where the runs end.
+  std::vector<std::size_t> sort_items() {
     std::sort(order.begin(), order.end(), [&](const Sorted& a, const Sorted& b) {
-      const std::uint32_t p = items[a.item].family, q = items[b.item].family;
-      return p != q ? p < q : a.item < b.item;
+      const std::uint32_t p = items[a.index].family, q = items[b.index].family;
+      return p != q ? p < q : a.index < b.index;
     });
     std::vector<Sorted> runs;
     for (std::uint32_t k = 0; k < order.size(); ++k) {
       if (k == 0 || at(k).family != at(k - 1).family)
-        runs.push_back({order[k].middle, order[k].item, k});
+        runs.push_back({order[k].middle, order[k].index, k});
       runs.back().end = k + 1;
     }
-    halve_all(runs, 0, runs.size());
+    halve_down(runs, {{0, runs.size()}}, 1);
     std::vector<Sorted> sorted;
+    sorted.reserve(order.size());
     std::vector<std::size_t> ends;
+    std::vector<std::array<std::size_t, 2>> ranges;
     for (const Sorted& run : runs) {
+      ranges.push_back({sorted.size(), sorted.size() + run.end - run.begin});
       sorted.insert(sorted.end(), order.begin() + run.begin, order.begin() + run.end);
       ends.push_back(sorted.size());
     }
     order = std::move(sorted);
+    halve_down(order, std::move(ranges), kLeafItems);
     return ends;
-  }
-
-  static std::size_t half_of(std::size_t begin, std::size_t end) {
-    return begin + (end - begin + 1) / 2;
-  }
-
-  // Halves [begin, end) at the median of the middles along the longest side of their box.
-  static void halve(std::vector<Sorted>& list, std::size_t begin, std::size_t end) {
-    Box box;
-    for (std::size_t k = begin; k < end; ++k) box.add(list[k].middle);
-    const int axis = box.longest_axis();
-    const auto place = [&](std::size_t k) { return list.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::nth_element(place(begin), place(half_of(begin, end)), place(end),
-                     [axis](const Sorted& a, const Sorted& b) {
-                       const double p = coordinate(a.middle, axis), q = coordinate(b.middle, axis);
-                       return p != q ? p < q : a.item < b.item;
-                     });
-  }
-
-  static void halve_all(std::vector<Sorted>& list, std::size_t begin, std::size_t end) {
-    if (end - begin < 2) return;
-    halve(list, begin, end);
-    halve_all(list, begin, half_of(begin, end));
-    halve_all(list, half_of(begin, end), end);
   }
 
   // Returns the node of [begin, end), all of one family.
@@ -100,7 +83,6 @@ struct OverlapTree::Build {
     std::uint32_t left = 0, right = 0;
     if (end - begin > kLeafItems) {
       const std::size_t half = half_of(begin, end);
-      halve(order, begin, end);
       left = node_of(begin, half);
       right = node_of(half, end);
     }
@@ -215,12 +197,12 @@ OverlapTree::OverlapTree(const std::vector<Item>& items) {
   if (items.empty()) return;
   Build build(*this, items);
   nodes_.reserve(items.size());
-  const std::vector<std::size_t> ends = build.sort_families();
+  const std::vector<std::size_t> ends = build.sort_items();
   build.node_over(ends, 0, ends.size());
   build.orient();
   places_.reserve(items.size());
   for (const Build::Sorted& s : build.order)
-    places_.push_back({box_of(items[s.item]), s.item, items[s.item].family});
+    places_.push_back({box_of(items[s.index]), s.index, items[s.index].family});
   for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
     if (nodes_[k].left == 0) leaves_.push_back(k);
   }

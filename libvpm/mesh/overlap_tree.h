@@ -38,15 +38,17 @@ class OverlapTree {
   std::uint64_t pairs_of(std::size_t group, Visit visit) const {
     const Node& leaf = nodes_[leaves_[group]];
     std::uint64_t compared = 0;
-    std::vector<std::uint32_t> stack{0};
-    while (!stack.empty()) {
-      const Node& node = nodes_[stack.back()];
-      stack.pop_back();
+    // Each level leaves at most one sibling. Levels halve the runs, then the items of one.
+    std::array<std::uint32_t, 128> stack;
+    std::size_t top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
       ++compared;
       if (node.end <= leaf.begin || !may_meet(leaf, node)) continue;
       if (node.left != 0) {
-        stack.push_back(node.right);
-        stack.push_back(node.left);
+        stack[top++] = node.right;
+        stack[top++] = node.left;
         continue;
       }
       for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {

@@ -19,10 +19,9 @@ constexpr std::size_t kFan = 32;
 
 using Corners = std::array<Vec3, 3>;
 
-// True if the corners of t lie in the plane of s and the two overlap there by more than the
-// tolerance in every direction, which the normals of the six edges decide.
-bool overlap_in_plane_of(const Corners& s, const Corners& t, double tolerance) {
-  const Vec3 normal = normalized_or_zero(cross(s[1] - s[0], s[2] - s[0]));
+// True if the corners of t lie in the plane of s, given its unit normal, and the two overlap there
+// by more than the tolerance in every direction, which the normals of the six edges decide.
+bool overlap_in_plane_of(const Corners& s, Vec3 normal, const Corners& t, double tolerance) {
   for (const Vec3& p : t) {
     if (std::abs(dot(normal, p - s[0])) > tolerance) return false;
   }
@@ -94,8 +93,11 @@ class Search {
     const std::vector<std::uint32_t> fan = fans_of(vertices_.size(), triangles_);
     std::vector<std::uint32_t> solid;
     std::vector<OverlapTree::Item> items;
+    items.reserve(triangles_.size());
+    normals_.resize(triangles_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       const Corners c = corners_of(t);
+      normals_[t] = normalized_or_zero(cross(c[1] - c[0], c[2] - c[0]));
       if (!has_area(c[0], c[1], c[2])) continue;
       solid.push_back(t);
       items.push_back({c, 2 * std::max(tolerance_, 0.0), fan[t]});
@@ -170,8 +172,8 @@ class Search {
 
   bool meet(std::uint32_t s, std::uint32_t t) const {
     const Corners a = corners_of(s), b = corners_of(t);
-    if (tolerance_ >= 0 &&
-        (overlap_in_plane_of(a, b, tolerance_) || overlap_in_plane_of(b, a, tolerance_)))
+    if (tolerance_ >= 0 && (overlap_in_plane_of(a, normals_[s], b, tolerance_) ||
+                            overlap_in_plane_of(b, normals_[t], a, tolerance_)))
       return true;
     if (beside(a, s, t) || beside(b, t, s)) return false;
     return triangles_intersect(vertices_, triangles_[s], triangles_[t]);
@@ -201,6 +203,7 @@ class Search {
   double tolerance_;
   WorkLimit limit_;
   MeshProgress progress_;
+  std::vector<Vec3> normals_;  // of the triangles, of unit length
   std::vector<TrianglePair> pairs_;
 };
 

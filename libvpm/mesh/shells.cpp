@@ -21,7 +21,7 @@ constexpr double kFlat = 1e-9;
 struct Shell {
   std::vector<std::uint32_t> triangles;
   Vec3 low, high;
-  std::vector<Vec3> samples;  // some of its vertices
+  std::vector<Vec3> samples;  // some of its vertices; none if it is the only shell
   double volume = 0;          // signed
 };
 
@@ -49,7 +49,7 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
     shells[shell_of_triangle[t]].triangles.push_back(t);
   for (Shell& shell : shells) {
     shell.low = shell.high = vertices[triangles[shell.triangles.front()][0]];
-    shell.samples = samples_of(vertices, triangles, shell.triangles);
+    if (count > 1) shell.samples = samples_of(vertices, triangles, shell.triangles);
     for (const std::uint32_t t : shell.triangles) {
       for (const std::uint32_t corner : triangles[t]) {
         const Vec3 p = vertices[corner];

@@ -14,6 +14,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/vec3x4.h"
 #include "libvpm/mesh/closest_lanes.h"
+#include "libvpm/mesh/halving.h"
 
 namespace vpm {
 namespace {
@@ -23,6 +24,15 @@ constexpr std::size_t kLeafTriangles = 4;
 // roundings, so that a box never hides its triangles.
 constexpr double kBoxPadding = 0x1p-21;
 constexpr float kBoundSlack = 1.0f + 0x1p-20f;
+
+// Starts to read objects that a search is likely to need soon, all their cache lines.
+template <class Object>
+[[gnu::always_inline]] inline void prefetch(const Object* first, std::uint32_t count) {
+  constexpr std::size_t kCacheLine = 64;  // bytes
+  const char* const bytes = reinterpret_cast<const char*>(first);
+  for (std::size_t at = 0; at < count * sizeof(Object); at += kCacheLine)
+    __builtin_prefetch(bytes + at);
+}
 
 // Updates `best` with the closest point on up to four triangles, if it is nearer than `best2`.
 [[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
@@ -45,52 +55,13 @@ constexpr float kBoundSlack = 1.0f + 0x1p-20f;
 
 struct TriangleBvh::Build {
   struct Item {
-    Vec3 centroid;
-    std::uint32_t triangle;
+    Vec3 middle;
+    std::uint32_t index;  // of the triangle
   };
 
   TriangleBvh& bvh;
   double padding;
   std::vector<Item> items;  // in the order of the leaves
-
-  static std::size_t middle_of(std::size_t begin, std::size_t end) {
-    return begin + (end - begin + 1) / 2;
-  }
-
-  // Halves [begin, end) at the median centroid along the longest side of the centroids' bounding
-  // box.
-  void halve(std::size_t begin, std::size_t end) {
-    Box box;
-    for (std::size_t i = begin; i < end; ++i) box.add(items[i].centroid);
-    const int axis = box.longest_axis();
-    const auto first = items.begin();
-    std::nth_element(first + static_cast<std::ptrdiff_t>(begin),
-                     first + static_cast<std::ptrdiff_t>(middle_of(begin, end)),
-                     first + static_cast<std::ptrdiff_t>(end),
-                     [axis](const Item& s, const Item& t) {
-                       const double p = coordinate(s.centroid, axis);
-                       const double q = coordinate(t.centroid, axis);
-                       return p != q ? p < q : s.triangle < t.triangle;
-                     });
-  }
-
-  // Orders the items by halving recursively down to leaves.
-  void order() {
-    using Range = std::array<std::size_t, 2>;
-    std::vector<Range> ranges{{0, items.size()}};
-    while (!ranges.empty()) {
-      std::erase_if(ranges, [](const Range& r) { return r[1] - r[0] <= kLeafTriangles; });
-      parallel_for(ranges.size(), 1 + ranges.size() / 64, [&](std::size_t from, std::size_t to) {
-        for (std::size_t k = from; k < to; ++k) halve(ranges[k][0], ranges[k][1]);
-      });
-      std::vector<Range> halves;
-      for (const auto& [begin, end] : ranges) {
-        halves.push_back({begin, middle_of(begin, end)});
-        halves.push_back({middle_of(begin, end), end});
-      }
-      ranges = std::move(halves);
-    }
-  }
 
   void set_box(Node& node, int slot, const Box& box) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -112,9 +83,9 @@ struct TriangleBvh::Build {
     std::array<std::size_t, 5> cut{begin, end, end, end, end};
     int parts = 1;
     if (end - begin > kLeafTriangles) {
-      const std::size_t middle = middle_of(begin, end);
-      const std::size_t left = middle - begin > kLeafTriangles ? middle_of(begin, middle) : middle;
-      const std::size_t right = end - middle > kLeafTriangles ? middle_of(middle, end) : end;
+      const std::size_t middle = half_of(begin, end);
+      const std::size_t left = middle - begin > kLeafTriangles ? half_of(begin, middle) : middle;
+      const std::size_t right = end - middle > kLeafTriangles ? half_of(middle, end) : end;
       cut = {begin, left, middle, right, end};
       parts = 4;
     }
@@ -169,11 +140,11 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
   const Vec3 side = box.high - box.low;
   nodes_.reserve(triangles.size() / 2 + 1);
   Build build{*this, kBoxPadding * std::max({side.x, side.y, side.z}), std::move(items)};
-  build.order();
+  halve_down(build.items, {{0, triangles.size()}}, kLeafTriangles);
   corners_.reserve(triangles.size());
   for (const Build::Item& item : build.items) {
-    const auto [a, b, c] = triangles[item.triangle];
-    corners_.push_back({vertices[a], vertices[b], vertices[c], item.triangle});
+    const auto [a, b, c] = triangles[item.index];
+    corners_.push_back({vertices[a], vertices[b], vertices[c], item.index});
   }
   build.build(0, corners_.size());
   nodes_.shrink_to_fit();
@@ -214,7 +185,7 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
       if (!(bound2[slot] <= static_cast<float>(best2) * kBoundSlack)) continue;
       const std::uint32_t child = node.child[slot], count = node.count[slot];
       if (count == 0 && child == 0) continue;
-      __builtin_prefetch(count > 0 ? static_cast<const void*>(&corners_[child]) : &nodes_[child]);
+      count > 0 ? prefetch(&corners_[child], count) : prefetch(&nodes_[child], 1);
       std::size_t place = top++;
       for (; place > base && stack[place - 1].bound2 < bound2[slot]; --place)
         stack[place] = stack[place - 1];

@@ -8,6 +8,7 @@
 // clear it before it gives it again: packing a mesh of 86 000 triangles then takes half the faults.
 #include <malloc.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -15,24 +16,37 @@
 
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{2} << 20, kPage = 4096;  // bytes
+constexpr std::size_t kLargePage = std::size_t{2} << 20;  // bytes
+
+// Asks for large pages wherever a block has a part of one, and in the heap after it: a page that is
+// touched before, by what malloc() notes behind a block, keeps small ones about it. A kernel that
+// has none says so, and nothing changes.
+void ask_for_large_pages(void* block, std::size_t size) {
+  const auto address = reinterpret_cast<std::uintptr_t>(block),
+             heap_end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  const std::uintptr_t first = address / kLargePage * kLargePage,
+                       last = address < heap_end ? heap_end : address + size,
+                       end = (last + kLargePage - 1) / kLargePage * kLargePage;
+  madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+}
 
 #ifdef M_TRIM_THRESHOLD
 // Both are what glibc comes to by itself for programs that free such blocks: its largest block that
 // is not mapped on its own, and twice as much free memory.
 constexpr int kLargestKept = 32 << 20, kKept = 2 * kLargestKept;  // bytes
-[[maybe_unused]] const bool keeps_memory =
-    mallopt(M_MMAP_THRESHOLD, kLargestKept) != 0 && mallopt(M_TRIM_THRESHOLD, kKept) != 0;
-#endif
 
-// Asks for large pages in the part of a new block that is whole pages. A kernel that has none says
-// so, and nothing changes.
-void ask_for_large_pages(void* block, std::size_t size) {
-  const auto address = reinterpret_cast<std::uintptr_t>(block);
-  const std::uintptr_t first = (address + kPage - 1) / kPage * kPage,
-                       end = (address + size) / kPage * kPage;
-  madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
-}
+// Sets these, and takes address space for the heap in pieces as large. Asks for large pages in the
+// first of them, from which most blocks come.
+[[maybe_unused]] const bool keeps_memory = [] {
+  const bool is_set = mallopt(M_MMAP_THRESHOLD, kLargestKept) != 0 &&
+                      mallopt(M_TRIM_THRESHOLD, kKept) != 0 &&
+                      mallopt(M_TOP_PAD, kLargestKept) != 0;
+  void* const block = std::malloc(kLargePage);
+  if (block != nullptr) ask_for_large_pages(block, kLargePage);
+  std::free(block);
+  return is_set;
+}();
+#endif
 
 }  // namespace
 
