@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libvpm/model/sphere.h"
+#include "libvpm/scene/points/disk_windows.h"
 
 namespace vpm {
 namespace {
@@ -64,7 +65,7 @@ void NoiseSum<DiskSurface>::add(const SurfaceSample& at, double area) {
   std::uint32_t count = 0;
   surface_.feet.for_points_in_ball(at.foot, reach * reach, [&](std::uint32_t i) {
     const Vec3 normal = widen(surface_.normals[i]);
-    if (dot(normal, at.normal) <= 0) return true;  // of the other side of a thin plate
+    if (dot(normal, at.normal) < kAlike) return true;  // beyond a crease, or a thin plate
     const double height = dot(normal, widen(surface_.measured[i]) - widen(surface_.feet.points[i]));
     sum += height * height;
     ++count;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/measure/contact_patch.h"
@@ -17,9 +18,14 @@ constexpr double kOfSample = 0.031;
 // by how much the surface lies off the planes of blocks, of what its mean height over each differs
 // from the plane: by itself in each block, and where all blocks are curved alike;
 constexpr double kOfPlane = 0.8, kOfPlanes = 0.8;
-// and by how much that mean height errs, which is of five places, in parts of how far the surface
-// bends off its tangent plane in a block.
+// by how much that mean height errs, which is of five places, in parts of how far the surface bends
+// off its tangent plane in a block;
 constexpr double kOfBend = 0.125;
+// and by how much the cross-section of an edge errs between points, which do not lie on it, and
+// which noise moves across it, in squares of their sampling radius.
+constexpr double kOfEdge = 0.15;
+// Least cosine between the normals of points in a block without an edge.
+constexpr double kNoEdge = 0.9;
 // Most, in radii of a block, by which that mean height may be off the tangent plane: it is .1 in a
 // ball as small as the block, and noise adds to it; beyond there is an edge, which has no mean
 // plane.
@@ -39,9 +45,9 @@ class VarianceSum {
   }
   // Returns the variance, in squares of the tool's volume.
   double variance() const {
-    const double planes = kOfPlanes * off_planes_, bend = kOfBend * bend_;
+    const double planes = kOfPlanes * off_planes_, bend = kOfBend * bend_, edge = kOfEdge * edge_;
     const double of_surface = noise_.variance() + kOfPlane * kOfPlane * squared_off_planes_ +
-                              planes * planes + bend * bend;
+                              planes * planes + bend * bend + edge * edge;
     const double per_volume = 1 / tool_volume_;
     return of_surface * per_volume * per_volume + kOfSample * kOfSample * squared_weights_;
   }
@@ -58,8 +64,11 @@ class VarianceSum {
       if (const std::optional<TangentPlane> back = work_.surface.other_side(at))
         add_noise(cell, block, {true, back->distance(center), back->normal, back->foot, at.point});
     TangentPlane mean;
-    if (!mean_of_five(work_.surface, center, double{block.radius}, 0, SampleTogether{}, mean))
+    if (!mean_of_five(work_.surface, center, double{block.radius}, kAreDisks ? kNoEdge : 0,
+                      SampleTogether{}, mean)) {
+      if constexpr (kAreDisks) add_edge(at.point, area / block.radius);
       return;
+    }
     const double bend = dot(at.normal, mean.foot - at.foot);
     if (!(std::fabs(bend) <= kMostBend * double{block.radius})) return;
     bend_ += area * bend;
@@ -68,6 +77,11 @@ class VarianceSum {
     const double off = area * -classified.plane.distance(mean.foot);
     off_planes_ += off;
     squared_off_planes_ += off * off;
+  }
+  // Adds the error of an edge of this length, m, by a point. That of all edges is alike.
+  void add_edge(std::uint32_t point, double length) {
+    const double spacing = work_.surface.radii.of_points[point];
+    edge_ += spacing * spacing * length;
   }
   // Adds the noise of the surface where its plane at a sample cuts a block. Returns that area, m^2.
   double add_noise(const CellView& cell, const CellBlock& block, const SurfaceSample& at) {
@@ -89,11 +103,13 @@ class VarianceSum {
     return tool_volume_ * area;
   }
 
+  static constexpr bool kAreDisks = std::is_same_v<Surface, DiskSurface>;
+
   const PoseWork<Surface>& work_;
   double tool_volume_;  // m^3
   NoiseSum<Surface> noise_;
   double off_planes_ = 0, squared_off_planes_ = 0;  // m^3, m^6
-  double bend_ = 0;                                 // m^3
+  double bend_ = 0, edge_ = 0;                      // m^3
   double squared_weights_ = 0;                      // of cut samples, in squares of the tool
 };
 
