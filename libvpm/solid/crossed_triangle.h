@@ -17,22 +17,11 @@ struct CrossedTriangle {
   std::uint32_t triangle = 0;
   std::array<Vec3, 3> corner;
   Vec3 normal;  // unit length
-  // Integrals over the part, but for w of c: 1, x, and products of x.
-  WideSum area;
-  WideVec3 mean;
-  std::array<WideSum, 6> products;
   std::array<int, 3> entries{};  // of the edges: how often each enters less how often it leaves
   // What cuts it, in the pair's lists; kept for forces.
   static constexpr std::uint32_t kEnd = 0xffffffffu;
   std::uint32_t last_segment = kEnd, last_point = kEnd;
 
-  void add(double sign, Vec3 p, Vec3 q) {
-    const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
-    area.add(size);
-    mean.add(size / 3 * (corner[0] + p + q));
-    const Products products_of = mean_products(corner[0], p, q);
-    for (std::size_t k = 0; k < 6; ++k) products[k].add(size * products_of[k]);
-  }
   void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
   void add_edge_crossing(const EdgeCrossing& crossing, Vec3 place) {
     entries[static_cast<std::size_t>(crossing.edge)] += crossing.sign;
@@ -41,14 +30,25 @@ struct CrossedTriangle {
   // Adds a crossing of edge b-c.
   void add_far_point(int sign, Vec3 place) { add(-sign, corner[1], place); }
   void add_corner_inside() { add(1, corner[1], corner[2]); }
-  Products products_real() const {
-    Products p{};
-    for (std::size_t k = 0; k < 6; ++k) p[k] = products[k].real();
-    return p;
+  // Integrals over the part, but for w of c: 1, x, and products of x.
+  double area() const { return sums_.real(0); }
+  Vec3 mean() const { return {sums_.real(1), sums_.real(2), sums_.real(3)}; }
+  Products products() const {
+    return {sums_.real(4), sums_.real(5), sums_.real(6),
+            sums_.real(7), sums_.real(8), sums_.real(9)};
   }
-  ForceMoments moments() const {
-    return flat_force_moments(normal, area.real(), mean.real(), products_real());
+  ForceMoments moments() const { return flat_force_moments(normal, area(), mean(), products()); }
+
+ private:
+  [[gnu::always_inline]] void add(double sign, Vec3 p, Vec3 q) {
+    const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
+    const Vec3 mean = size / 3 * (corner[0] + p + q);
+    const Products m = mean_products(corner[0], p, q);
+    sums_.add({size, mean.x, mean.y, mean.z, size * m[0], size * m[1], size * m[2], size * m[3],
+               size * m[4], size * m[5], 0, 0});
   }
+
+  WideSums<12> sums_;
 };
 
 }  // namespace vpm

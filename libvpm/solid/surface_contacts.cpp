@@ -38,8 +38,8 @@ void add(SurfaceContact& sum, const SurfaceContact& c) {
 
 // Returns the middle of the part of a crossed triangle inside.
 Vec3 middle_of(const CrossedTriangle& triangle) {
-  const double area = triangle.area.real();
-  return area > 0 ? triangle.mean.real() / area : triangle.corner[0];
+  const double area = triangle.area();
+  return area > 0 ? triangle.mean() / area : triangle.corner[0];
 }
 
 bool holds(const Box& box, const Box& other) {
@@ -265,7 +265,7 @@ void SurfacePair::add_pieces(std::uint32_t largest) {
   }
   const auto add_flat = [&](std::uint32_t role, std::uint32_t part, const CrossedTriangle& piece) {
     contact_sums_[number_of_[part]][role].cut.add(
-        flat_moments(piece.normal, piece.area.real(), piece.mean.real(), piece.products_real()));
+        flat_moments(piece.normal, piece.area(), piece.mean(), piece.products()));
   };
   for (std::uint32_t role = 0; role < 2; ++role)
     for (std::uint32_t f = 0; f < roles_[role].crossed.size(); ++f) {

@@ -79,8 +79,8 @@ double SurfacePair::depth_of_largest() {
   probes_.clear();
   for (std::uint32_t role = 0; role < 2; ++role)
     for (const CrossedTriangle& triangle : roles_[role].crossed)
-      if (const double area = triangle.area.real(); area > 0)
-        probes_.push_back({area, triangle.mean.real() / area, role});
+      if (const double area = triangle.area(); area > 0)
+        probes_.push_back({area, triangle.mean() / area, role});
   for (const WholePiece& piece : whole_pieces_) {
     const Role& role = roles_[piece.role];
     const bool is_triangle = (piece.child & kLeaf) != 0;
@@ -263,9 +263,9 @@ class SurfacePair::CellVisitor {
     CrossedTriangle part;
     part.corner = cell.corner, part.normal = normal_;
     pair_.add_cuts(cell, part);
-    const double area = part.area.real();
+    const double area = part.area();
     if (!(area > 0)) return {};  // rounding
-    const Vec3 middle = part.mean.real() / area;
+    const Vec3 middle = part.mean() / area;
     auto& planes = pair_.planes_;
     planes.clear();
     for (const CutSegment& s : cell.segments) {
@@ -345,9 +345,9 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
     CrossedTriangle part;
     part.corner = cell.corner, part.normal = normal;
     add_cuts(cell, part);
-    const double area = part.area.real();
+    const double area = part.area();
     if (!(area > 0)) return;  // rounding
-    const Vec3 middle = part.mean.real() / area;
+    const Vec3 middle = part.mean() / area;
     Foretold linear = plane_across(which, cell.segments);
     if (!is_plausible(which, linear, middle)) linear = depth_at(which, middle);
     piece = add_cut_force(which, part.moments(), linear);
@@ -363,8 +363,8 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
     std::size_t which, const CrossedTriangle& triangle, std::span<const CutSegment> segments) {
   Foretold linear = plane_across(which, segments);
   if (!linear.is_known) return std::nullopt;
-  const double area = triangle.area.real();
-  const Vec3 middle = area > 0 ? triangle.mean.real() / area : triangle.corner[0];
+  const double area = triangle.area();
+  const Vec3 middle = area > 0 ? triangle.mean() / area : triangle.corner[0];
   if (squared_norm(linear.depth.gradient) < kAgreeing2 && area > 0)
     linear = depth_at(which, middle);
   LinearPiece piece = add_cut_force(which, triangle.moments(), linear);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "libvpm/core/lanes.h"
+
 namespace vpm {
 namespace {
 
@@ -40,8 +42,8 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
   if (PlacedBounds(second.bounds(0, 0), pose).children_that_meet(first.nodes()[0]) == 0)
     return sums_;
   list_triangles();
-  drop_apart();
-  for (const CandidatePair& pair : candidates_) meet(pair);
+  drop_apart(roles_[0].placed, roles_[1].placed, candidates_, signs_);
+  meet_all();
   for (std::size_t role = 0; role < 2; ++role) mark_crossed(role);
   if (with_contacts_) join_crossed();
   for (std::size_t role = 0; role < 2; ++role) {
@@ -87,7 +89,7 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
   if (&role == &roles_[1])
     for (Vec3& corner : corners) corner = role.to_first * corner;
   const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return {corners, role.tree->triangles()[triangle], normal, role.tree->longest_edge(triangle)};
+  return {corners, normal, role.tree->longest_edge(triangle), role.tree->triangles()[triangle]};
 }
 
 // Returns the triangle's place in the role's lists for this pose.
@@ -110,7 +112,7 @@ void SurfacePair::list_triangles() {
     candidates_.push_back({place_of(roles_[0], a), place_of(roles_[1], b)});
   for (Role& role : roles_) {
     const std::size_t count = role.listed.size();
-    if (role.placed.size() < count) role.placed.resize(count), role.filters.resize(count);
+    if (role.placed.size() < count) role.placed.resize(count);
     const SurfaceTree& tree = *role.tree;
     for (std::size_t k = 0; k < count; ++k) {
       if (k + 2 * kAhead < count)
@@ -118,28 +120,22 @@ void SurfacePair::list_triangles() {
       if (k + kAhead < count)
         for (const std::uint32_t v : tree.triangles()[role.listed[k + kAhead]])
           __builtin_prefetch(&tree.vertices()[v]);
-      const PlacedTriangle& at = role.placed[k] = placed(role, role.listed[k]);
-      role.filters[k] = filter_triangle(at.corner, at.normal, at.longest_edge, per_unit_);
+      role.placed[k] = placed(role, role.listed[k]);
     }
   }
 }
 
-// Keeps the pairs that floats do not tell to be apart.
-void SurfacePair::drop_apart() {
-  std::size_t kept = 0;
-  for (const CandidatePair pair : candidates_) {
-    candidates_[kept] = pair;
-    kept += are_apart(roles_[0].filters[pair.a], roles_[1].filters[pair.b]) ? 0 : 1;
-  }
-  candidates_.resize(kept);
+VPM_AVX2_CLONES
+void SurfacePair::meet_all() {
+  for (std::size_t k = 0; k < candidates_.size(); ++k) meet(candidates_[k], signs_[k]);
 }
 
-void SurfacePair::meet(CandidatePair places) {
+void SurfacePair::meet(CandidatePair places, const PairSigns& signs) {
   const std::uint32_t first_triangle = roles_[0].listed[places.a],
                       second_triangle = roles_[1].listed[places.b];
   const PlacedTriangle &a = roles_[0].placed[places.a], &b = roles_[1].placed[places.b];
   TriangleCrossing crossing;
-  const Meeting meeting = cross_triangles(a, b, crossing);
+  const Meeting meeting = cross_triangles(a, b, signs, crossing);
   if (meeting == Meeting::undecided) ++sums_.undecided;
   if (meeting != Meeting::crossing) return;
   ++sums_.crossings;
@@ -226,15 +222,16 @@ void SurfacePair::mark_crossed(std::size_t which) {
   }
 }
 
+VPM_AVX2_CLONES
 void SurfacePair::add_crossed(std::size_t which) {
   Role& role = roles_[which];
   for (CrossedTriangle& triangle : role.crossed) {
     if (is_inside(which, role.tree->triangles()[triangle.triangle][2]))
       triangle.add_corner_inside();
-    const double area = triangle.area.real();
+    const double area = triangle.area();
     role.sums.area.add(area);
     role.sums.cut.add(
-        flat_moments(triangle.normal, area, triangle.mean.real(), triangle.products_real()));
+        flat_moments(triangle.normal, area, triangle.mean(), triangle.products()));
   }
 }
 

@@ -17,7 +17,7 @@
 #include "libvpm/solid/linear_force.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
-#include "libvpm/solid/triangle_filter.h"
+#include "libvpm/solid/triangle_pair.h"
 #include "libvpm/solid/wide_sum.h"
 
 namespace vpm {
@@ -133,9 +133,8 @@ class SurfacePair {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
     Pose to_first, to_other;              // from its own frame
-    std::vector<std::uint32_t> listed;    // triangles that may meet the other's,
-    std::vector<PlacedTriangle> placed;   // these in the first's frame,
-    std::vector<FilterTriangle> filters;  // and in the unit
+    std::vector<std::uint32_t> listed;   // triangles that may meet the other's,
+    std::vector<PlacedTriangle> placed;  // and these in the first's frame
     std::vector<CrossedTriangle> crossed;
     // What cuts them, for forces: each entry names the one before of the same triangle.
     std::vector<std::pair<CutSegment, std::uint32_t>> segments;
@@ -152,8 +151,8 @@ class SurfacePair {
   PlacedTriangle placed(const Role& role, std::uint32_t triangle) const;
   std::uint32_t place_of(Role& role, std::uint32_t triangle);
   void list_triangles();
-  void drop_apart();
-  void meet(CandidatePair places);
+  void meet_all();
+  void meet(CandidatePair places, const PairSigns& signs);
   CrossedTriangle& crossed(Role& role, std::uint32_t triangle, const PlacedTriangle& placed);
   bool is_inside(std::size_t role, std::uint32_t vertex);
   void mark_crossed(std::size_t role);
@@ -210,6 +209,7 @@ class SurfacePair {
   std::array<Role, 2> roles_;
   TreeWalk walk_;
   std::vector<CandidatePair> candidates_;                    // as places in the roles' lists
+  std::vector<PairSigns> signs_;                             // of those that may meet
   std::vector<std::uint32_t> pending_;                       // nodes
   std::vector<std::pair<std::uint32_t, Foretold>> patches_;  // nodes, and what their parents tell
   DepthCells cells_;

@@ -36,7 +36,7 @@ using vpm::absolute, vpm::mask_of;
                     : __builtin_shuffle(v, Ints{2, 2, 2, 2, 3, 3, 3, 3});
 }
 
-// A node is opened alone where it is so many times as large as the other, else both are.
+// A node is opened alone where it is more than so many times as large as the other.
 constexpr float kLarger = 2;
 
 }  // namespace
@@ -161,6 +161,26 @@ struct Placed {
   return pairs_that_meet(a, 0, at, pose) | pairs_that_meet(a, 2, at, pose) << 8;
 }
 
+// Pairs of children of nodes a and b, bit 4 k + l for a's l and b's k, of which either is so much
+// larger that it is opened alone, and those of two triangles. A triangle has size 0.
+struct PairSizes {
+  unsigned a_is_larger = 0, b_is_larger = 0, are_triangles = 0;
+};
+
+[[gnu::always_inline]] inline PairSizes sizes_of(const SurfaceTree::Node& a,
+                                                 const SurfaceTree::Node& b) {
+  PairSizes sizes;
+  const Floats zero{}, of_a = twice(row(a.size)), all_of_b = row(b.size);
+  for (int first = 0; first < 4; first += 2) {
+    const Floats of_b = fourfold(all_of_b, first);
+    const int bit = 4 * first;
+    sizes.a_is_larger |= mask_of(of_a > kLarger * of_b) << bit;
+    sizes.b_is_larger |= mask_of(of_b > kLarger * of_a) << bit;
+    sizes.are_triangles |= mask_of(of_a + of_b <= zero) << bit;
+  }
+  return sizes;
+}
+
 // Prefetches a node of a tree into the cache, since the walk comes to it soon.
 [[gnu::always_inline]] inline void fetch(const SurfaceTree::Node& node) {
   constexpr std::size_t kLine = 64;
@@ -170,34 +190,33 @@ struct Placed {
 
 }  // namespace
 
-// Lists pairs of triangles, and pushes what is to be opened: the larger of two children, or both
-// where their sizes are alike. A triangle has size 0.
-void TreeWalk::step(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned meets) {
+// Pushes what is to be opened of two nodes whose children meet: the larger of two, or both where
+// their sizes are alike.
+void TreeWalk::push(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned larger_of_a,
+                    unsigned larger_of_b, unsigned alike) {
   const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
-  const auto push = [&](const Place& next) __attribute__((always_inline)) {
+  const auto add = [&](const Place& next) __attribute__((always_inline)) {
     fetch(a.nodes()[next.a]), fetch(b.nodes()[next.b]);
     stack_.push_back(next);
   };
-  std::array<unsigned, 4> of_p{};  // b's children that meet a child of p, which is opened alone
-  for (unsigned k = 0; meets != 0; ++k, meets >>= 4) {
-    unsigned of_q = 0;  // a's children that meet q's child, which is opened alone
-    for (unsigned rest = meets & 15; rest != 0; rest &= rest - 1) {
-      const auto l = static_cast<unsigned>(std::countr_zero(rest));
-      const std::uint32_t child_p = p.child[l], child_q = q.child[k];
-      const float size_p = p.size[static_cast<int>(l)], size_q = q.size[static_cast<int>(k)];
-      if ((child_p & child_q & SurfaceTree::kLeaf) != 0)
-        found_.push_back({child_p & ~SurfaceTree::kLeaf, child_q & ~SurfaceTree::kLeaf});
-      else if (size_p > kLarger * size_q)
-        of_p[l] |= 1u << 4 * k;
-      else if (size_q > kLarger * size_p)
-        of_q |= 1u << l;
-      else
-        push({child_p, child_q, 0xffff});
-    }
-    if (of_q != 0) push({place.a, q.child[k], of_q * 0x1111});
+  for (; alike != 0; alike &= alike - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(alike));
+    add({p.child[bit & 3], q.child[bit >> 2], 0xffff});
   }
-  for (std::size_t l = 0; l < 4; ++l)
-    if (of_p[l] != 0) push({p.child[l], place.b, of_p[l] * 15});
+  for (unsigned k = 0; larger_of_b != 0; ++k, larger_of_b >>= 4)
+    if ((larger_of_b & 15) != 0) add({place.a, q.child[k], (larger_of_b & 15) * 0x1111});
+  for (unsigned l = 0; larger_of_a != 0; ++l, larger_of_a = larger_of_a >> 1 & 0x7777)
+    if ((larger_of_a & 0x1111) != 0) add({p.child[l], place.b, (larger_of_a & 0x1111) * 15});
+}
+
+// Lists pairs of triangles, which are children of two nodes.
+void TreeWalk::list(const SurfaceTree::Node& p, const SurfaceTree::Node& q, unsigned pairs) {
+  if (found_.size() < count_ + 16) found_.resize(2 * found_.size() + 16);
+  for (; pairs != 0; pairs &= pairs - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(pairs));
+    found_[count_++] = {p.child[bit & 3] & ~SurfaceTree::kLeaf,
+                        q.child[bit >> 2] & ~SurfaceTree::kLeaf};
+  }
 }
 
 VPM_VECTOR_CLONES
@@ -205,14 +224,19 @@ std::span<const CandidatePair> TreeWalk::run(const SurfaceTree& a, const Surface
                                              const Pose& pose) {
   const FloatPose to_a(pose);
   stack_.assign(1, {0, 0, 0xffff});
-  found_.clear();
+  count_ = 0;
   while (!stack_.empty()) {
     const Place place = stack_.back();
     stack_.pop_back();
-    step(a, b, place,
-         place.children & pairs_that_meet(a.nodes()[place.a], b.nodes()[place.b], to_a));
+    const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
+    const unsigned meets = place.children & pairs_that_meet(p, q, to_a);
+    if (meets == 0) continue;
+    const auto [a_is_larger, b_is_larger, are_triangles] = sizes_of(p, q);
+    list(p, q, meets & are_triangles);
+    push(a, b, place, meets & a_is_larger, meets & b_is_larger,
+         meets & ~(a_is_larger | b_is_larger | are_triangles));
   }
-  return found_;
+  return std::span(found_).first(count_);
 }
 
 }  // namespace vpm

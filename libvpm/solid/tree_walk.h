@@ -8,6 +8,7 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/solid/surface_tree.h"
+#include "libvpm/solid/triangle_pair.h"
 
 namespace vpm {
 
@@ -35,15 +36,10 @@ class PlacedBounds {
   float offset_, width_;                         // of the slab, from the box's centre
 };
 
-// Names a triangle of each of two surfaces that may cross each other, by its index there.
-struct CandidatePair {
-  std::uint32_t a, b;
-};
-
 class TreeWalk {
  public:
-  // Returns the pairs of triangles that may meet, each once. `pose` maps b's frame to a's. The
-  // pairs are kept by the walk, and hold until the next call.
+  // Returns the pairs of triangles that may meet, each once, by their indices. `pose` maps b's
+  // frame to a's. The pairs are kept by the walk, and hold until the next call.
   std::span<const CandidatePair> run(const SurfaceTree& a, const SurfaceTree& b, const Pose& pose);
 
  private:
@@ -52,10 +48,13 @@ class TreeWalk {
     std::uint32_t a, b;  // nodes
     unsigned children;   // bit 4 k + l: of a's l and b's k
   };
-  void step(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned meets);
+  void list(const SurfaceTree::Node& p, const SurfaceTree::Node& q, unsigned pairs);
+  void push(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned larger_of_a,
+            unsigned larger_of_b, unsigned alike);
 
   std::vector<Place> stack_;
-  std::vector<CandidatePair> found_;
+  std::vector<CandidatePair> found_;  // the first `count_`
+  std::size_t count_ = 0;
 };
 
 }  // namespace vpm

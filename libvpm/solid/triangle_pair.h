@@ -4,18 +4,35 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "libvpm/core/vec3.h"
 
 namespace vpm {
 
+// Names a triangle of each of two surfaces that may cross each other, by its place in a list of its
+// surface's.
+struct CandidatePair {
+  std::uint32_t a, b;
+};
+
 // Triangle in the frame of both surfaces. `index` orders its vertices as all triangles of its
 // surface do.
 struct PlacedTriangle {
   std::array<Vec3, 3> corner;
-  std::array<std::uint32_t, 3> index;
   Vec3 normal;          // cross product of its edges: twice the area vector
   double longest_edge;  // or more
+  std::array<std::uint32_t, 3> index;
+};
+
+// What doubles tell of a pair of triangles a, b: heights of corners over the other's plane, times
+// twice its area, and the signs of these and of the volumes of pairs of edges, in bits. Bit k
+// stands for a's corner k over b's plane, 3 + k for b's corner over a's, and 6 + 3 i + j for the
+// edges i of a and j of b. Of a sign that rounding leaves open neither bit is set.
+struct PairSigns {
+  std::array<double, 3> above_b, above_a;
+  unsigned above, below;
 };
 
 // Point where an edge of one triangle, from corner `edge` to the next, passes through the other.
@@ -42,8 +59,15 @@ struct TriangleCrossing {
   int first_count = 0, second_count = 0;
 };
 
-// Finds how two triangles meet whose boxes overlap, and fills `crossing` where they cross.
-Meeting cross_triangles(const PlacedTriangle& a, const PlacedTriangle& b,
+// Keeps those pairs of two lists of triangles, whose boxes must overlap, that doubles do not tell
+// to be apart, in their order, and fills `signs` with what doubles tell of each of these. Nothing
+// that follows from signs depends on how many doubles tell: exact ones decide what they leave open.
+void drop_apart(std::span<const PlacedTriangle> a, std::span<const PlacedTriangle> b,
+                std::vector<CandidatePair>& pairs, std::vector<PairSigns>& signs);
+
+// Finds how two triangles meet of which drop_apart() told the signs, and fills `crossing` where
+// they cross.
+Meeting cross_triangles(const PlacedTriangle& a, const PlacedTriangle& b, const PairSigns& signs,
                         TriangleCrossing& crossing);
 
 }  // namespace vpm

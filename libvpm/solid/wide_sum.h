@@ -13,11 +13,12 @@ namespace vpm {
 // summed is scaled by powers of two. Needs rounding to nearest, and no contraction.
 class WideSum {
  public:
-  void add(double term) {
+  void add(double term) { add(term, high_, low_); }
+  [[gnu::always_inline]] static void add(double term, double& high_sum, double& low_sum) {
     const double high = (term + kHigh) - kHigh;
     const double low = ((term - high) + kLow) - kLow;
-    high_ += high;
-    low_ += low;
+    high_sum += high;
+    low_sum += low;
   }
   // Takes a sum of some of the terms away, exactly.
   void subtract(const WideSum& o) { high_ -= o.high_, low_ -= o.low_; }
@@ -38,21 +39,40 @@ class WideVec3 {
   WideSum x_, y_, z_;
 };
 
+// Several sums at once.
+template <std::size_t N>
+class WideSums {
+ public:
+  using Numbers = std::array<double, N>;
+
+  [[gnu::always_inline]] void add(const Numbers& terms) {
+    for (std::size_t k = 0; k < N; ++k) WideSum::add(terms[k], high_[k], low_[k]);
+  }
+  void subtract(const WideSums& o) {
+    for (std::size_t k = 0; k < N; ++k) high_[k] -= o.high_[k], low_[k] -= o.low_[k];
+  }
+  double real(std::size_t k) const { return high_[k] + low_[k]; }
+
+ private:
+  Numbers high_{}, low_{};
+};
+
 class WideMoments {
  public:
-  void add(const SurfaceMoments& m) {
-    area_.add(m.area), by_x_.add(m.by_x), by_y_.add(m.by_y), by_z_.add(m.by_z), first_.add(m.first);
+  [[gnu::always_inline]] void add(const SurfaceMoments& m) {
+    const auto& [a, x, y, z, f] = m;
+    sums_.add({a.x, a.y, a.z, x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, f.x, f.y, f.z, 0});
   }
-  void subtract(const WideMoments& o) {
-    area_.subtract(o.area_), first_.subtract(o.first_);
-    by_x_.subtract(o.by_x_), by_y_.subtract(o.by_y_), by_z_.subtract(o.by_z_);
-  }
+  void subtract(const WideMoments& o) { sums_.subtract(o.sums_); }
   SurfaceMoments real() const {
-    return {area_.real(), by_x_.real(), by_y_.real(), by_z_.real(), first_.real()};
+    const auto at = [&](std::size_t k) {
+      return Vec3{sums_.real(k), sums_.real(k + 1), sums_.real(k + 2)};
+    };
+    return {at(0), at(3), at(6), at(9), at(12)};
   }
 
  private:
-  WideVec3 area_, by_x_, by_y_, by_z_, first_;
+  WideSums<16> sums_;
 };
 
 // Force and torque about the origin.
