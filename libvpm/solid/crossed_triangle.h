@@ -42,13 +42,17 @@ struct CrossedTriangle {
  private:
   [[gnu::always_inline]] void add(double sign, Vec3 p, Vec3 q) {
     const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
-    const Vec3 mean = size / 3 * (corner[0] + p + q);
-    const Products m = mean_products(corner[0], p, q);
-    sums_.add({size, mean.x, mean.y, mean.z, size * m[0], size * m[1], size * m[2], size * m[3],
-               size * m[4], size * m[5], 0, 0});
+    const Vec3 mean = size / 3 * (corner[0] + p + q), total = corner[0] + p + q;
+    // Means of products (mean_products), four and two at once.
+    Double4 four{}, two{};
+    for (const Vec3& v : {corner[0], p, q, total}) {
+      four += Double4{v.x, v.y, v.z, v.x} * Double4{v.x, v.y, v.z, v.y};
+      two += Double4{v.x, v.y, 0, 0} * Double4{v.z, v.z, 0, 0};
+    }
+    sums_.add({Double4{size, mean.x, mean.y, mean.z}, size * (four / 12), size * (two / 12)});
   }
 
-  WideSums<12> sums_;
+  WideSums<3> sums_;
 };
 
 }  // namespace vpm

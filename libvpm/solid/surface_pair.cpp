@@ -93,7 +93,7 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
 }
 
 // Returns the triangle's place in the role's lists for this pose.
-std::uint32_t SurfacePair::place_of(Role& role, std::uint32_t triangle) {
+[[gnu::always_inline]] inline std::uint32_t SurfacePair::place_of(Role& role, std::uint32_t triangle) {
   Listed& listed = role.place_of[triangle];
   if (listed.stamp != stamp_) {
     listed = {stamp_, static_cast<std::uint32_t>(role.listed.size())};
@@ -107,9 +107,14 @@ std::uint32_t SurfacePair::place_of(Role& role, std::uint32_t triangle) {
 void SurfacePair::list_triangles() {
   const auto pairs = walk_.run(*roles_[0].tree, *roles_[1].tree, roles_[1].to_first);
   sums_.candidates = pairs.size();
-  candidates_.clear();
-  for (const auto& [a, b] : pairs)
-    candidates_.push_back({place_of(roles_[0], a), place_of(roles_[1], b)});
+  candidates_.resize(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (k + kAhead < pairs.size()) {
+      __builtin_prefetch(&roles_[0].place_of[pairs[k + kAhead].a]);
+      __builtin_prefetch(&roles_[1].place_of[pairs[k + kAhead].b]);
+    }
+    candidates_[k] = {place_of(roles_[0], pairs[k].a), place_of(roles_[1], pairs[k].b)};
+  }
   for (Role& role : roles_) {
     const std::size_t count = role.listed.size();
     if (role.placed.size() < count) role.placed.resize(count);
@@ -127,14 +132,15 @@ void SurfacePair::list_triangles() {
 
 VPM_AVX2_CLONES
 void SurfacePair::meet_all() {
-  for (std::size_t k = 0; k < candidates_.size(); ++k) meet(candidates_[k], signs_[k]);
+  TriangleCrossing crossing;
+  for (std::size_t k = 0; k < candidates_.size(); ++k) meet(candidates_[k], signs_[k], crossing);
 }
 
-void SurfacePair::meet(CandidatePair places, const PairSigns& signs) {
+// Finds how two triangles meet, in `crossing`, and adds what follows.
+void SurfacePair::meet(CandidatePair places, const PairSigns& signs, TriangleCrossing& crossing) {
   const std::uint32_t first_triangle = roles_[0].listed[places.a],
                       second_triangle = roles_[1].listed[places.b];
   const PlacedTriangle &a = roles_[0].placed[places.a], &b = roles_[1].placed[places.b];
-  TriangleCrossing crossing;
   const Meeting meeting = cross_triangles(a, b, signs, crossing);
   if (meeting == Meeting::undecided) ++sums_.undecided;
   if (meeting != Meeting::crossing) return;

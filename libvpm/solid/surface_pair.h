@@ -152,7 +152,7 @@ class SurfacePair {
   std::uint32_t place_of(Role& role, std::uint32_t triangle);
   void list_triangles();
   void meet_all();
-  void meet(CandidatePair places, const PairSigns& signs);
+  void meet(CandidatePair places, const PairSigns& signs, TriangleCrossing& crossing);
   CrossedTriangle& crossed(Role& role, std::uint32_t triangle, const PlacedTriangle& placed);
   bool is_inside(std::size_t role, std::uint32_t vertex);
   void mark_crossed(std::size_t role);

@@ -26,10 +26,17 @@ using vpm::absolute, vpm::mask_of;
 [[gnu::always_inline]] inline Floats row(const Float4& v) {
   return load<Floats>(reinterpret_cast<const float*>(&v));
 }
+// Returns four numbers of b, and behind them four of a.
+[[gnu::always_inline]] inline Floats side_by_side(const Float4& b, const Float4& a) {
+  return Floats{b[0], b[1], b[2], b[3], a[0], a[1], a[2], a[3]};
+}
 // Values for eight pairs of children: those of one node's four, twice, and those of two of the
 // other node's, from lane `first` (0 or 2) on, four times each.
 [[gnu::always_inline]] inline Floats twice(const Floats& v) {
   return __builtin_shuffle(v, Ints{0, 1, 2, 3, 0, 1, 2, 3});
+}
+[[gnu::always_inline]] inline Floats upper_twice(const Floats& v) {
+  return __builtin_shuffle(v, Ints{4, 5, 6, 7, 4, 5, 6, 7});
 }
 [[gnu::always_inline]] inline Floats fourfold(const Floats& v, int first) {
   return first == 0 ? __builtin_shuffle(v, Ints{0, 0, 0, 0, 1, 1, 1, 1})
@@ -92,32 +99,49 @@ unsigned PlacedBounds::children_that_meet(const SurfaceTree::Node& node) const {
 
 namespace {
 
-// What the tests of a's children against b's share, in the lower lanes: b's bounds, in a's frame
-// and in its own, and a's along the axes of b's frame.
+// Motion from b's frame to a's in the lower lanes, and from a's to b's in the upper ones: rows.
+struct BothWays {
+  std::array<Floats, 9> rotation, size;
+};
+
+[[gnu::always_inline]] inline BothWays both_ways(const FloatPose& pose) {
+  const auto lanes = [](float there, float back) __attribute__((always_inline)) {
+    return Floats{there, there, there, there, back, back, back, back};
+  };
+  BothWays ways;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t there = 3 * i + j, back = 3 * j + i;
+      ways.rotation[there] = lanes(pose.rotation[there], pose.rotation[back]);
+      ways.size[there] = lanes(pose.size[there], pose.size[back]);
+    }
+  return ways;
+}
+
+// What the tests of a's children against b's share: b's bounds, in the lower lanes.
 struct Placed {
-  std::array<Floats, 3> center, normal, spread;  // of b; halves of its boxes along a's axes
-  std::array<Floats, 3> half;
-  Floats offset, width;                 // of b's slabs, from the centres of their boxes
-  std::array<Floats, 3> along, across;  // halves of a's boxes, and its normals
+  std::array<Floats, 3> center, half;  // of b, in a's frame and in its own
+  Floats offset, width;                // of b's slabs, from the centres of their boxes
+  // Normals, and halves of boxes, of b along a's axes, and in the upper lanes of a along b's.
+  std::array<Floats, 3> normal, spread;
 };
 
 [[gnu::always_inline]] inline Placed placed(const SurfaceTree::Node& a, const SurfaceTree::Node& b,
-                                            const FloatPose& pose) {
+                                            const FloatPose& pose, const BothWays& ways) {
   const auto& r = pose.rotation;
-  const auto& s = pose.size;
-  std::array<Floats, 3> c, n, own, own_n;
+  std::array<Floats, 3> c, n, half, normal;
   Placed at;
   for (std::size_t i = 0; i < 3; ++i) {
     c[i] = row(b.center[i]), at.half[i] = row(b.half[i]), n[i] = row(b.normal[i]);
-    own[i] = row(a.half[i]), own_n[i] = row(a.normal[i]);
+    half[i] = side_by_side(b.half[i], a.half[i]);
+    normal[i] = side_by_side(b.normal[i], a.normal[i]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = 3 * i;
+    const auto &turn = ways.rotation, &size = ways.size;
     at.center[i] = r[k] * c[0] + r[k + 1] * c[1] + r[k + 2] * c[2] + pose.translation[i];
-    at.normal[i] = r[k] * n[0] + r[k + 1] * n[1] + r[k + 2] * n[2];
-    at.spread[i] = s[k] * at.half[0] + s[k + 1] * at.half[1] + s[k + 2] * at.half[2];
-    at.along[i] = s[i] * own[0] + s[3 + i] * own[1] + s[6 + i] * own[2];
-    at.across[i] = absolute(r[i] * own_n[0] + r[3 + i] * own_n[1] + r[6 + i] * own_n[2]);
+    at.normal[i] = turn[k] * normal[0] + turn[k + 1] * normal[1] + turn[k + 2] * normal[2];
+    at.spread[i] = size[k] * half[0] + size[k + 1] * half[1] + size[k + 2] * half[2];
   }
   at.offset = row(b.offset) - (n[0] * c[0] + n[1] * c[1] + n[2] * c[2]);
   at.width = row(b.width);
@@ -140,7 +164,7 @@ struct Placed {
     // Boxes along the axes of a's frame.
     meets &= absolute(d[i]) <= own + fourfold(at.spread[i], first);
     height += twice(row(a.normal[i])) * center;
-    reach += twice(at.across[i]) * fourfold(at.half[i], first);
+    reach += absolute(upper_twice(at.normal[i])) * fourfold(at.half[i], first);
     size += absolute(normal[i]) * own;
   }
   // Slabs of a, and of b.
@@ -150,14 +174,15 @@ struct Placed {
   // Boxes along the axes of b's frame.
   for (std::size_t j = 0; j < 3; ++j)
     meets &= absolute(r[j] * d[0] + r[3 + j] * d[1] + r[6 + j] * d[2]) <=
-             fourfold(at.half[j], first) + twice(at.along[j]);
+             fourfold(at.half[j], first) + upper_twice(at.spread[j]);
   return mask_of(meets);
 }
 
 [[gnu::always_inline]] inline unsigned pairs_that_meet(const SurfaceTree::Node& a,
                                                        const SurfaceTree::Node& b,
-                                                       const FloatPose& pose) {
-  const Placed at = placed(a, b, pose);
+                                                       const FloatPose& pose,
+                                                       const BothWays& ways) {
+  const Placed at = placed(a, b, pose, ways);
   return pairs_that_meet(a, 0, at, pose) | pairs_that_meet(a, 2, at, pose) << 8;
 }
 
@@ -223,13 +248,14 @@ VPM_VECTOR_CLONES
 std::span<const CandidatePair> TreeWalk::run(const SurfaceTree& a, const SurfaceTree& b,
                                              const Pose& pose) {
   const FloatPose to_a(pose);
+  const BothWays ways = both_ways(to_a);
   stack_.assign(1, {0, 0, 0xffff});
   count_ = 0;
   while (!stack_.empty()) {
     const Place place = stack_.back();
     stack_.pop_back();
     const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
-    const unsigned meets = place.children & pairs_that_meet(p, q, to_a);
+    const unsigned meets = place.children & pairs_that_meet(p, q, to_a, ways);
     if (meets == 0) continue;
     const auto [a_is_larger, b_is_larger, are_triangles] = sizes_of(p, q);
     list(p, q, meets & are_triangles);

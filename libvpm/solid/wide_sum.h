@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "libvpm/core/vec3x4.h"
 #include "libvpm/solid/surface_moments.h"
 
 namespace vpm {
@@ -14,9 +15,10 @@ namespace vpm {
 class WideSum {
  public:
   void add(double term) { add(term, high_, low_); }
-  [[gnu::always_inline]] static void add(double term, double& high_sum, double& low_sum) {
-    const double high = (term + kHigh) - kHigh;
-    const double low = ((term - high) + kLow) - kLow;
+  template <class Number>
+  [[gnu::always_inline]] static void add(const Number& term, Number& high_sum, Number& low_sum) {
+    const Number high = (term + kHigh) - kHigh;
+    const Number low = ((term - high) + kLow) - kLow;
     high_sum += high;
     low_sum += low;
   }
@@ -39,29 +41,34 @@ class WideVec3 {
   WideSum x_, y_, z_;
 };
 
-// Several sums at once.
+// Sums side by side, four in each element.
 template <std::size_t N>
 class WideSums {
  public:
-  using Numbers = std::array<double, N>;
+  using Terms = std::array<Double4, N>;
 
-  [[gnu::always_inline]] void add(const Numbers& terms) {
+  [[gnu::always_inline]] void add(const Terms& terms) {
     for (std::size_t k = 0; k < N; ++k) WideSum::add(terms[k], high_[k], low_[k]);
   }
   void subtract(const WideSums& o) {
     for (std::size_t k = 0; k < N; ++k) high_[k] -= o.high_[k], low_[k] -= o.low_[k];
   }
-  double real(std::size_t k) const { return high_[k] + low_[k]; }
+  double real(std::size_t k) const {
+    const auto lane = static_cast<int>(k % 4);
+    return high_[k / 4][lane] + low_[k / 4][lane];
+  }
 
  private:
-  Numbers high_{}, low_{};
+  // GCC aligns vectors less in functions that are not compiled for AVX.
+  alignas(sizeof(Double4)) Terms high_{}, low_{};
 };
 
 class WideMoments {
  public:
   [[gnu::always_inline]] void add(const SurfaceMoments& m) {
     const auto& [a, x, y, z, f] = m;
-    sums_.add({a.x, a.y, a.z, x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, f.x, f.y, f.z, 0});
+    sums_.add({Double4{a.x, a.y, a.z, x.x}, Double4{x.y, x.z, y.x, y.y},
+               Double4{y.z, z.x, z.y, z.z}, Double4{f.x, f.y, f.z, 0}});
   }
   void subtract(const WideMoments& o) { sums_.subtract(o.sums_); }
   SurfaceMoments real() const {
@@ -72,7 +79,7 @@ class WideMoments {
   }
 
  private:
-  WideSums<16> sums_;
+  WideSums<4> sums_;
 };
 
 // Force and torque about the origin.
