@@ -1,9 +1,10 @@
-// Pairs of triangles that never reach the exact signs: what trees and floats rule out is apart.
+// Pairs of triangles that never reach the exact signs: what trees and doubles rule out is apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <set>
 #include <utility>
@@ -11,7 +12,6 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/solid/tree_walk.h"
-#include "libvpm/solid/triangle_filter.h"
 #include "libvpm/solid/triangle_pair.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/solid/pair_cases.h"
@@ -24,7 +24,13 @@ using Corners = std::array<Vec3, 3>;
 PlacedTriangle placed(const Corners& corners) {
   const auto& [a, b, c] = corners;
   const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-  return {corners, {0, 1, 2}, cross(b - a, c - a), 1.00001 * longest};
+  return {corners, cross(b - a, c - a), 1.00001 * longest, {0, 1, 2}};
+}
+
+// Finds how two triangles meet by exact signs alone.
+Meeting exact_meeting(const PlacedTriangle& p, const PlacedTriangle& q) {
+  TriangleCrossing crossing;
+  return cross_triangles(p, q, {}, crossing);
 }
 
 Corners corners_of(const SurfaceTree& tree, std::uint32_t triangle, const Pose& pose) {
@@ -48,8 +54,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> crossings(const SurfaceTree& a
   for (std::uint32_t s = 0; s < a.triangles().size(); ++s)
     for (std::uint32_t t = 0; t < b.triangles().size(); ++t) {
       const Corners p = a.corners(s), q = corners_of(b, t, pose);
-      TriangleCrossing crossing;
-      if (!apart(p, q) && cross_triangles(placed(p), placed(q), crossing) == Meeting::crossing)
+      if (!apart(p, q) && exact_meeting(placed(p), placed(q)) == Meeting::crossing)
         found.insert({s, t});
     }
   return found;
@@ -111,46 +116,64 @@ class Triangles {
   double size_;
 };
 
-// Returns whether the filter tells that these are apart, in a unit that holds both.
-bool are_apart_in_floats(const PlacedTriangle& p, const PlacedTriangle& q, double scale) {
-  const auto filter = [&](const PlacedTriangle& t) {
-    return filter_triangle(t.corner, t.normal, t.longest_edge, scale);
-  };
-  return are_apart(filter(p), filter(q));
+// Returns what doubles tell of pairs of triangles with one place; nothing of those that are apart.
+std::vector<std::optional<PairSigns>> told(const std::vector<PlacedTriangle>& p,
+                                           const std::vector<PlacedTriangle>& q) {
+  std::vector<CandidatePair> pairs;
+  for (std::uint32_t k = 0; k < p.size(); ++k) pairs.push_back({k, k});
+  std::vector<PairSigns> signs;
+  drop_apart(p, q, pairs, signs);
+  std::vector<std::optional<PairSigns>> all(p.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) all[pairs[k].a] = signs[k];
+  return all;
 }
 
-TEST(TriangleCandidates, FloatsRuleOutNoPairThatMeets) {
+TEST(TriangleCandidates, DoublesTellWhatExactSignsTell) {
   for (const double size : {.3, .01, 1e-4, 1e-6}) {
     Triangles triangles(size);
-    int meeting = 0, told = 0, right = 0;
-    for (int k = 0; k < 20000; ++k) {
-      const PlacedTriangle p = placed(triangles.any()), q = placed(triangles.touching(p.corner));
+    std::vector<PlacedTriangle> first, touching, other;
+    for (int k = 0; k < 20001; ++k) {  // no multiple of four
+      first.push_back(placed(triangles.any()));
+      touching.push_back(placed(triangles.touching(first.back().corner)));
+      other.push_back(placed(triangles.any()));
+    }
+    const auto told_of_touching = told(first, touching), told_of_others = told(first, other);
+    int meeting = 0, apart = 0, right = 0;
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      const Meeting truth = exact_meeting(first[k], touching[k]);
+      const auto& signs = told_of_touching[k];
       TriangleCrossing crossing;
-      const bool is_apart = cross_triangles(p, q, crossing) == Meeting::apart;
-      const bool is_told = are_apart_in_floats(p, q, .25);
-      EXPECT_FALSE(is_told && !is_apart);
-      meeting += !is_apart, told += is_told;
-      const PlacedTriangle r = placed(triangles.any());
-      right +=
-          are_apart_in_floats(p, r, .25) != (cross_triangles(p, r, crossing) != Meeting::apart);
+      EXPECT_EQ(signs ? cross_triangles(first[k], touching[k], *signs, crossing) : Meeting::apart,
+                truth);
+      meeting += truth != Meeting::apart, apart += !signs;
+      right += !told_of_others[k] == (exact_meeting(first[k], other[k]) == Meeting::apart);
     }
     EXPECT_GT(meeting, 1000);
-    EXPECT_GT(told, 0);
-    EXPECT_GT(right, 19900) << "floats tell next to all that are not made to touch, of size "
+    EXPECT_GT(apart, 1000);
+    EXPECT_GT(right, 19900) << "doubles tell next to all that are not made to touch, of size "
                             << size;
   }
 }
 
 // So that scaling by powers of two, and no other unit, changes nothing.
-TEST(TriangleCandidates, WhatFloatsTellIsOfNoUnit) {
-  Triangles triangles(.1);
-  for (int k = 0; k < 1000; ++k) {
-    const Corners s = triangles.any(), t = triangles.touching(s);
-    Corners far_s = s, far_t = t;
-    for (Corners* corners : {&far_s, &far_t})
-      for (Vec3& corner : *corners) corner = 0x1p40 * corner;
-    EXPECT_EQ(are_apart_in_floats(placed(s), placed(t), .25),
-              are_apart_in_floats(placed(far_s), placed(far_t), 0x1p-42));
+TEST(TriangleCandidates, WhatDoublesTellIsOfNoUnit) {
+  for (const double scale : {0x1p40, 0x1p-60}) {
+    Triangles triangles(.1);
+    std::vector<PlacedTriangle> s, t, far_s, far_t;
+    for (int k = 0; k < 1000; ++k) {
+      Corners corners = triangles.any(), other = triangles.touching(corners);
+      s.push_back(placed(corners)), t.push_back(placed(other));
+      for (Corners* of : {&corners, &other})
+        for (Vec3& corner : *of) corner = scale * corner;
+      far_s.push_back(placed(corners)), far_t.push_back(placed(other));
+    }
+    const auto near = told(s, t), far = told(far_s, far_t);
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      ASSERT_EQ(near[k].has_value(), far[k].has_value());
+      if (!near[k]) continue;
+      EXPECT_EQ(near[k]->above, far[k]->above);
+      EXPECT_EQ(near[k]->below, far[k]->below);
+    }
   }
 }
 
