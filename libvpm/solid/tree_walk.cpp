@@ -28,7 +28,7 @@ using vpm::absolute, vpm::mask_of;
 }
 // Returns four numbers of b, and behind them four of a.
 [[gnu::always_inline]] inline Floats side_by_side(const Float4& b, const Float4& a) {
-  return Floats{b[0], b[1], b[2], b[3], a[0], a[1], a[2], a[3]};
+  return __builtin_shuffle(row(b), row(a), Ints{0, 1, 2, 3, 8, 9, 10, 11});
 }
 // Values for eight pairs of children: those of one node's four, twice, and those of two of the
 // other node's, from lane `first` (0 or 2) on, four times each.
