@@ -10,6 +10,9 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/render.h"
+#include "libvpm/synthetic/shapes.h"
+#include "libvpm/synthetic/surface.h"
+#include "libvpm/synthetic/truth.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -141,6 +144,21 @@ TEST_F(Intervals, HoldTheTruthAtAThinPlateOfPoints) {
     Pose further = pose;
     further.translation.z -= kThickness;
     coverage.add(query_.run(AnyBody(plate), pose), truth(wall(0), pose) - truth(wall(0), further));
+  }
+  coverage.expect_95();
+}
+
+// Points do not lie on the edge between two walls, so that it errs alike along all of its length,
+// which no noise tells.
+TEST_F(Intervals, HoldTheTruthAtAnEdgeOfPoints) {
+  const auto roof = synthetic::make_prism({{-9, 10}, {0, 1}, {9, 10}}, {});
+  const synthetic::TrueSolid cube(synthetic::make_cube(kEdge));
+  const Cloud seen = make_cloud(synthetic::render(*roof, camera_at({})), camera_at({}), {});
+  const AnyBody points(without_camera(seen));
+  Coverage coverage;
+  for (int k = 0; k < 24; ++k) {
+    const Pose pose{generic_rotation(), {.01, -.01, .93 + .005 * k}};
+    coverage.add(query_.run(points, pose), cube.penetration(pose, *roof, 1e-6).volume);
   }
   coverage.expect_95();
 }

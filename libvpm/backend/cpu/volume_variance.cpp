@@ -23,7 +23,7 @@ constexpr double kOfPlane = 0.8, kOfPlanes = 0.8;
 constexpr double kOfBend = 0.125;
 // and by how much the cross-section of an edge errs between points, which do not lie on it, and
 // which noise moves across it, in squares of their sampling radius.
-constexpr double kOfEdge = 0.15;
+constexpr double kOfEdge = 0.25;
 // Least cosine between the normals of points in a block without an edge.
 constexpr double kNoEdge = 0.9;
 // Most, in radii of a block, by which that mean height may be off the tangent plane: it is .1 in a
