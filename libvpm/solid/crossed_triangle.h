@@ -16,7 +16,7 @@ namespace vpm {
 struct CrossedTriangle {
   std::uint32_t triangle = 0;
   std::array<Vec3, 3> corner;
-  Vec3 normal;  // unit length
+  Vec3 normal;                   // unit length
   std::array<int, 3> entries{};  // of the edges: how often each enters less how often it leaves
   // What cuts it, in the pair's lists; kept for forces.
   static constexpr std::uint32_t kEnd = 0xffffffffu;

@@ -93,7 +93,8 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
 }
 
 // Returns the triangle's place in the role's lists for this pose.
-[[gnu::always_inline]] inline std::uint32_t SurfacePair::place_of(Role& role, std::uint32_t triangle) {
+[[gnu::always_inline]] inline std::uint32_t SurfacePair::place_of(Role& role,
+                                                                  std::uint32_t triangle) {
   Listed& listed = role.place_of[triangle];
   if (listed.stamp != stamp_) {
     listed = {stamp_, static_cast<std::uint32_t>(role.listed.size())};
@@ -236,8 +237,7 @@ void SurfacePair::add_crossed(std::size_t which) {
       triangle.add_corner_inside();
     const double area = triangle.area();
     role.sums.area.add(area);
-    role.sums.cut.add(
-        flat_moments(triangle.normal, area, triangle.mean(), triangle.products()));
+    role.sums.cut.add(flat_moments(triangle.normal, area, triangle.mean(), triangle.products()));
   }
 }
 

@@ -132,7 +132,7 @@ class SurfacePair {
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
-    Pose to_first, to_other;              // from its own frame
+    Pose to_first, to_other;             // from its own frame
     std::vector<std::uint32_t> listed;   // triangles that may meet the other's,
     std::vector<PlacedTriangle> placed;  // and these in the first's frame
     std::vector<CrossedTriangle> crossed;

@@ -99,25 +99,22 @@ struct FourSigns {
   return signs;
 }
 
-// The following take signs of one pair or of four, and return a bit for each edge of a triangle,
-// the lowest for the first.
+// The following take the signs of one pair or of four, and return bits 0 to 2 for the edges of a
+// triangle.
 
-// Edges from one corner that is among three bits to another.
+// Returns the edges of which both ends are among three bits.
 template <class Bits>
 [[gnu::always_inline]] inline Bits edges_within(const Bits& corners) {
   return corners & (corners >> 1 | corners << 2) & 7;
 }
-// Edges of a, or of b, of which `any` or all volumes are among the bits.
-template <class Bits>
-[[gnu::always_inline]] inline Bits packed_rows(const Bits& first_of_row) {
-  const Bits bits = first_of_row & 0x49;
-  return (bits | bits >> 2 | bits >> 4) & 7;
-}
+// Returns the edges of a of which any, or all, volumes with edges of b are set.
 template <class Bits>
 [[gnu::always_inline]] inline Bits edges_of_a(const Bits& signs, bool any) {
   const Bits e = signs >> kEdges;
-  return packed_rows(any ? e | e >> 1 | e >> 2 : e & e >> 1 & e >> 2);
+  const Bits rows = (any ? e | e >> 1 | e >> 2 : e & e >> 1 & e >> 2) & 0x49;  // bits 0, 3 and 6
+  return (rows | rows >> 2 | rows >> 4) & 7;
 }
+// Returns the same of b with edges of a.
 template <class Bits>
 [[gnu::always_inline]] inline Bits edges_of_b(const Bits& signs, bool any) {
   const Bits e = signs >> kEdges;
@@ -127,7 +124,7 @@ template <class Bits>
 // Returns a bit for each pair whose signs tell that each edge misses the other triangle: both its
 // ends lie on one side, or it passes on different sides of two edges.
 [[gnu::always_inline]] inline unsigned told_apart(const FourSigns& signs) {
-  const auto& [above, below] = signs;
+  const Bits4 &above = signs.above, &below = signs.below;
   const auto on_one_side = [&](unsigned heights) __attribute__((always_inline)) {
     return edges_within<Bits4>(above >> heights & 7) | edges_within<Bits4>(below >> heights & 7);
   };
@@ -216,7 +213,8 @@ class Crossing {
   bool has_zero_ = false;
 };
 
-// Drops the pairs that heights over planes tell to be apart.
+// Drops the pairs that heights over planes tell to be apart: half of them and more, for a third of
+// what the volumes of edges take.
 VPM_VECTOR_CLONES
 void drop_on_one_side(std::span<const PlacedTriangle> a, std::span<const PlacedTriangle> b,
                       std::vector<CandidatePair>& pairs) {
