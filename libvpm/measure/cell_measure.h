@@ -340,6 +340,7 @@ class CellMeasure {
   }
   VPM_HD const Surface& surface() const { return surface_; }
   VPM_HD const Pose& to_surface() const { return to_surface_; }
+  VPM_HD const ToolRadius& tool_radius() const { return tool_radius_; }
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:

@@ -138,7 +138,7 @@ TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceMayReach) {
       sample = {narrow(numbers_.place(0.05)), static_cast<float>(radius), 1};
     }
     std::vector<SurfaceOfSample> together(samples.size());
-    together.resize(sample_surface(surface_, to_surface, samples, together.data()));
+    together.resize(sample_surface(surface_, to_surface, samples, HUGE_VAL, together.data()));
     std::size_t found = 0;
     for (std::uint32_t s = 0; s < samples.size(); ++s) {
       const Vec3 x = to_surface * widen(samples[s].center);

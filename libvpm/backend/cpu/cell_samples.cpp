@@ -11,14 +11,16 @@ namespace {
 
 using FourSamples = SurfaceSampleOf<Double4>;
 
-// Samples a surface; where it is surely further than `enough`, m, before x, maybe only that.
+// Samples a surface; where it is surely further than `enough`, m, before x or behind it, but by
+// less than `deepest`, m, maybe only that.
 [[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x,
-                                                    const Double4& /*enough*/) {
+                                                    const Double4& /*enough*/, double /*deepest*/) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});
 }
 [[gnu::always_inline]] inline FourSamples sample_at(const RigSurface::View& surface,
-                                                    const Vec3x4& x, const Double4& enough) {
-  return surface.rig->sample_near(x, surface.cameras, enough);
+                                                    const Vec3x4& x, const Double4& enough,
+                                                    double deepest) {
+  return surface.rig->sample_near(x, surface.cameras, enough, deepest);
 }
 // Joins four known samples into lanes.
 [[gnu::always_inline]] inline FourSamples joined(const SurfaceSample& a, const SurfaceSample& b,
@@ -42,7 +44,7 @@ template <class Surface>
 [[gnu::always_inline]] inline void sample_lanes(const Surface& surface, const Vec3 (&places)[4],
                                                 SurfaceSample (&on_surface_at)[4]) {
   const FourSamples four =
-      sample_at(surface, {places[0], places[1], places[2], places[3]}, Double4{} + HUGE_VAL);
+      sample_at(surface, {places[0], places[1], places[2], places[3]}, Double4{} + HUGE_VAL, 0);
   for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
 }
 
@@ -50,6 +52,7 @@ template <class Surface>
 [[gnu::always_inline]] inline std::uint32_t sample_lanes(const Surface& surface,
                                                          const Pose& to_surface,
                                                          std::span<const CellSample> samples,
+                                                         double deepest,
                                                          SurfaceOfSample* on_surface_at) {
   const auto count = static_cast<std::uint32_t>(samples.size());
   std::uint32_t found = 0;
@@ -57,7 +60,7 @@ template <class Surface>
     const auto [a, b, c, d] = four_of(samples, first);
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const FourSamples four = sample_at(surface, x, radius);  // no piece reaches further
+    const FourSamples four = sample_at(surface, x, radius, deepest);  // no piece reaches further
     const Mask4 wanted = negated(four.known) |
                          (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
     if (!any(wanted)) continue;
@@ -131,13 +134,15 @@ void sample_four(const RigSurface& surface, const Vec3 (&places)[4],
 
 VPM_VECTOR_CLONES
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
-  return sample_lanes(surface, to_surface, samples, on_surface_at);
+                             std::span<const CellSample> samples, double deepest,
+                             SurfaceOfSample* on_surface_at) {
+  return sample_lanes(surface, to_surface, samples, deepest, on_surface_at);
 }
 VPM_AVX2_CLONES
 std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
-  return sample_lanes(surface, to_surface, samples, on_surface_at);
+                             std::span<const CellSample> samples, double deepest,
+                             SurfaceOfSample* on_surface_at) {
+  return sample_lanes(surface, to_surface, samples, deepest, on_surface_at);
 }
 
 VPM_VECTOR_CLONES

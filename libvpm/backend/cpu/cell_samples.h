@@ -36,11 +36,14 @@ void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
 
 // Samples the surface for those tool samples that it reaches, whose distance is less than their
 // radius, and those where none is known. Writes them in order to `on_surface_at` and returns their
-// number.
+// number. Of samples wholly behind the surface, by less than `deepest`, m, it may tell only that:
+// any such distance, and no foot.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
+                             std::span<const CellSample> samples, double deepest,
+                             SurfaceOfSample* on_surface_at);
 std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
+                             std::span<const CellSample> samples, double deepest,
+                             SurfaceOfSample* on_surface_at);
 
 // Writes closest_normal() of each sampled place.
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
@@ -194,7 +197,8 @@ class SamplesTogether {
     for (std::uint32_t first = range.begin; first < range.end; first += kAtOnce) {
       const std::uint32_t some = std::min(range.end - first, kAtOnce);
       const std::uint32_t found =
-          sample_surface(surface, measure.to_surface(), {range.all + first, some}, on_surface_at_);
+          sample_surface(surface, measure.to_surface(), {range.all + first, some},
+                         measure.tool_radius().supported_beyond, on_surface_at_);
       for (std::uint32_t k = 0; k < found; ++k)
         add_one(measure, range, first + on_surface_at_[k].sample, on_surface_at_[k].at, far,
                 result);

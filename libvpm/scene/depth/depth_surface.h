@@ -295,22 +295,28 @@ struct DepthSurface : DepthSampler {
     const std::int32_t wide = p.u1 - p.u0, tall = p.v1 - p.v0;
     const int least = exponent_of(static_cast<std::uint32_t>(wide > tall ? wide : tall)) - 2;
     const int level = least < 0 ? 0 : least < levels ? least : levels - 1;
-    const std::int32_t row = tiles_per_row(level), u_end = p.u1 >> level, v_end = p.v1 >> level;
+    const std::int32_t u0 = p.u0 >> level, v0 = p.v0 >> level, columns = (p.u1 >> level) - u0;
     const double size = std::int32_t{1} << level, middle = 0.5 * (size - 1);
-    AffineRange off;
-    for (std::int32_t v = p.v0 >> level; v <= v_end; ++v) {
-      const double of_row = plane.per_v * (v * size + middle);
-      for (std::int32_t u = p.u0 >> level; u <= u_end; ++u) {
-        const InverseDepthRange tile = tiles[level][v * row + u];
-        const double affine = of_row + plane.per_u * (u * size + middle);
-        const double low = tile.low - affine, high = tile.high - affine;
-        off.low = low < off.low ? low : off.low;
-        off.high = high > off.high ? high : off.high;
+    const double first_u = u0 * size + middle;  // pixels, of the middle of a tile
+    double at_v = v0 * size + middle;
+    const InverseDepthRange* row = tiles[level] + (v0 * tiles_per_row(level) + u0);
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::int32_t rows = (p.v1 >> level) - v0; rows >= 0; --rows) {
+      const double of_row = plane.per_v * at_v;
+      double at_u = first_u;
+      for (std::int32_t u = 0; u <= columns; ++u) {
+        const double affine = of_row + plane.per_u * at_u;
+        const double off_low = row[u].low - affine, off_high = row[u].high - affine;
+        low = off_low < low ? off_low : low;
+        high = off_high > high ? off_high : high;
+        at_u += size;
       }
+      at_v += size;
+      row += tiles_per_row(level);
     }
     // Within a tile, and up to half a pixel where the nearest pixel counts alone.
     const double slack = (middle + 0.5) * (std::fabs(plane.per_u) + std::fabs(plane.per_v));
-    return {off.low - slack, off.high + slack};
+    return {low - slack, high + slack};
   }
 
   // Returns the exponent of the greatest power of two that is not above a number; 0 for 0.

@@ -166,16 +166,19 @@ struct RigReader {
     using Real = RealOf<Place>;
     using Mask = MaskOf<Real>;
     const IntOf<Real> number = gather(camera.silhouettes.nearest, reading.pixel);
-    const Mask is_known = reading.is_measured & widen_mask(number > 0);
-    if (!any(is_known)) return;
-    const Beside<Real> beside = find_beside(camera, at, reading, number);
-    const Mask may_matter = is_known & beside.may_matter;
+    Mask may_matter = reading.is_measured & widen_mask(number > 0);
     if (!any(may_matter)) return;
-    const Real zero{}, depth = get(camera, beside.index, &SilhouettePixel::depth);
+    const IntOf<Real> none{}, index = number > 0 ? number - 1 : none;  // the first where none is
+    const Real zero{}, depth = get(camera, index, &SilhouettePixel::depth);
     const Mask is_behind = reading.distance < 0;
     // The pixel of the place is on the far side if its surface is a step beyond the silhouette.
     const Mask is_far =
-        camera.image.inverse_depth(reading.pixel, IntOf<Real>{}) * depth < 1 - DepthSampler::kJump;
+        camera.image.inverse_depth(reading.pixel, none) * depth < 1 - DepthSampler::kJump;
+    may_matter &= is_behind ^ is_far;
+    if (!any(may_matter)) return;
+    const Beside<Real> beside = find_beside(camera, at, reading, index);
+    may_matter &= beside.may_matter;
+    if (!any(may_matter)) return;
     Real out_u{}, out_v{};
     const Real aside = offset_aside(camera, at, beside, is_behind, out_u, out_v);
     const Real before = aside > 0 ? aside : zero, deeper = depth - at.z;
@@ -198,17 +201,15 @@ struct RigReader {
         choose(is_beside, normalized_or_zero(out - dot(out, ray) * ray), reading.normal);
   }
 
-  // Finds how far places are from the nearest silhouette pixels, of which `number` is one more than
-  // the index, or 0.
+  // Finds how far places are from silhouette pixels.
   template <class Place>
   [[gnu::always_inline]] static VPM_HD Beside<RealOf<Place>> find_beside(
       const RigCamera& camera, const Place& at, const RigReading<RealOf<Place>>& reading,
-      const IntOf<RealOf<Place>>& number) {
+      const IntOf<RealOf<Place>>& index) {
     using Real = RealOf<Place>;
     const Intrinsics& k = camera.image.k;
-    const IntOf<Real> none{};
     Beside<Real> beside;
-    beside.index = number > 0 ? number - 1 : none;  // the first where there is none
+    beside.index = index;
     beside.height = k.fx / k.fy;
     const Real per_depth = quotient(1, at.z);
     beside.u = k.fx * (at.x * per_depth) + k.cx - get(camera, beside.index, &SilhouettePixel::u);

@@ -32,16 +32,17 @@ struct RigSampler {
 
   // Samples the surface as these cameras see it, which are those that decide in a ball about x; as
   // all do where each of them has something well before x, or none knows of x. Where the surface is
-  // surely further than `enough`, m, before x, only that is told: any such distance.
+  // surely further than `enough`, m, before x, only that is told: any such distance. So it is where
+  // the surface is surely further behind x, but by less than `deepest`, m.
   template <class Place>
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_near(
-      const Place& x, CameraSet some, const RealOf<Place>& enough) const {
+      const Place& x, CameraSet some, const RealOf<Place>& enough, double deepest = 0) const {
     using Real = RealOf<Place>;
     MaskOf<Real> is_decided{};
-    const SurfaceSampleOf<Real> near = sample_by(x, some, enough, is_decided);
+    const SurfaceSampleOf<Real> near = sample_by(x, some, enough, deepest, is_decided);
     if (some == all_cameras() || all(is_decided)) return near;
     MaskOf<Real> ignored{};
-    SurfaceSampleOf<Real> sampled = sample_by(x, all_cameras(), enough, ignored);
+    SurfaceSampleOf<Real> sampled = sample_by(x, all_cameras(), enough, deepest, ignored);
     sampled.known = (is_decided & near.known) | (negated(is_decided) & sampled.known);
     sampled.distance = is_decided ? near.distance : sampled.distance;
     sampled.normal = choose(is_decided, near.normal, sampled.normal);
@@ -53,7 +54,7 @@ struct RigSampler {
   // there is no other; `is_decided` receives where there is one.
   template <class Place>
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_by(
-      const Place& x, CameraSet some, const RealOf<Place>& enough,
+      const Place& x, CameraSet some, const RealOf<Place>& enough, double deepest,
       MaskOf<RealOf<Place>>& is_decided) const {
     using Real = RealOf<Place>;
     RigReading<Real> readings[kMostCameras];
@@ -61,8 +62,9 @@ struct RigSampler {
     const std::int32_t found = read_all(x, some, readings, on_surface.known, is_decided);
     if (found == 0) return on_surface;
     Nearest<Real> nearest = nearest_of(readings, found);
-    if (all(negated(on_surface.known) | is_clearly_before(nearest, enough))) {
-      on_surface.distance = nearest.length;
+    const MaskOf<Real> is_behind = is_clearly_behind(nearest, enough, deepest);
+    if (all(negated(on_surface.known) | is_clearly_before(nearest, enough) | is_behind)) {
+      on_surface.distance = is_behind ? nearest.greatest : nearest.length;
       return on_surface;
     }
     weigh(x, nearest, readings, found);
@@ -246,6 +248,16 @@ struct RigSampler {
                                                                       const Real& enough) {
     return nearest.is_free & negated(nearest.has_fits) & (nearest.length > kRounding * enough) &
            (2 * nearest.length > kRounding * nearest.apart);
+  }
+
+  // True where all means are surely less than -`enough`, and the greatest is not below -`deepest`:
+  // it is within `apart` of the greatest reading that it holds.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD MaskOf<Real> is_clearly_behind(const Nearest<Real>& nearest,
+                                                                      const Real& enough,
+                                                                      double deepest) {
+    return negated(nearest.has_fits) & (nearest.greatest < -(kRounding * enough)) &
+           (nearest.greatest - kRounding * nearest.apart > -deepest);
   }
 
   // Weighs those readings that may be of the nearest surface, or of that whose mean is the
