@@ -137,7 +137,7 @@ void SurfacePair::meet_all() {
   for (std::size_t k = 0; k < candidates_.size(); ++k) meet(candidates_[k], signs_[k], crossing);
 }
 
-// Finds how two triangles meet, in `crossing`, and adds what follows.
+// Finds how two triangles meet, and adds what follows. `crossing` is scratch.
 void SurfacePair::meet(CandidatePair places, const PairSigns& signs, TriangleCrossing& crossing) {
   const std::uint32_t first_triangle = roles_[0].listed[places.a],
                       second_triangle = roles_[1].listed[places.b];

@@ -209,7 +209,7 @@ class SurfacePair {
   std::array<Role, 2> roles_;
   TreeWalk walk_;
   std::vector<CandidatePair> candidates_;                    // as places in the roles' lists
-  std::vector<PairSigns> signs_;                             // of those that may meet
+  std::vector<PairSigns> signs_;                             // what doubles tell of these
   std::vector<std::uint32_t> pending_;                       // nodes
   std::vector<std::pair<std::uint32_t, Foretold>> patches_;  // nodes, and what their parents tell
   DepthCells cells_;

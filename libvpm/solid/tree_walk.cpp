@@ -22,7 +22,8 @@ using vpm::absolute, vpm::mask_of;
   return mask_of(halves[0]) | mask_of(halves[1]) << 4;
 }
 
-// Returns a row of a node's bounds, and what follows it in the node: lanes that are not used.
+// Returns a row of a node's bounds in the lower lanes. The upper ones, which are not used, hold
+// what follows the row: the node does not end with one.
 [[gnu::always_inline]] inline Floats row(const Float4& v) {
   return load<Floats>(reinterpret_cast<const float*>(&v));
 }
@@ -30,8 +31,9 @@ using vpm::absolute, vpm::mask_of;
 [[gnu::always_inline]] inline Floats side_by_side(const Float4& b, const Float4& a) {
   return __builtin_shuffle(row(b), row(a), Ints{0, 1, 2, 3, 8, 9, 10, 11});
 }
-// Values for eight pairs of children: those of one node's four, twice, and those of two of the
-// other node's, from lane `first` (0 or 2) on, four times each.
+// These spread values over eight pairs of children: twice those of one node's four, from the lower
+// or the upper lanes, and four times each those of two of the other node's, from lane `first` (0 or
+// 2) on.
 [[gnu::always_inline]] inline Floats twice(const Floats& v) {
   return __builtin_shuffle(v, Ints{0, 1, 2, 3, 0, 1, 2, 3});
 }
@@ -99,7 +101,8 @@ unsigned PlacedBounds::children_that_meet(const SurfaceTree::Node& node) const {
 
 namespace {
 
-// Motion from b's frame to a's in the lower lanes, and from a's to b's in the upper ones: rows.
+// Rows of the rotation from b's frame to a's in the lower lanes, and from a's to b's in the upper
+// ones; and their magnitudes, a little more.
 struct BothWays {
   std::array<Floats, 9> rotation, size;
 };
@@ -118,7 +121,7 @@ struct BothWays {
   return ways;
 }
 
-// What the tests of a's children against b's share: b's bounds, in the lower lanes.
+// Holds what the tests of a's children against b's share: b's bounds, in the lower lanes.
 struct Placed {
   std::array<Floats, 3> center, half;  // of b, in a's frame and in its own
   Floats offset, width;                // of b's slabs, from the centres of their boxes

@@ -18,10 +18,10 @@ constexpr double kFilter = 3e-14;
 // The corners of two triangles with overlapping boxes are within so many times the sum of their
 // longest edges: the root of three for boxes, and their padding.
 constexpr double kSpread = 1.8;
-// Bits of the signs.
+// First bits, in PairSigns, of the heights of b's corners and of the pairs of edges.
 constexpr unsigned kHeightsOfB = 3, kEdges = 6;
 
-// Four pairs of triangles, side by side.
+// Holds four pairs of triangles side by side, and what their tests share.
 struct FourPairs {
   std::array<Vec3x4, 3> a, b;  // corners, about the first of b
   Vec3x4 normal_a, normal_b;
@@ -68,7 +68,7 @@ struct FourPairs {
 
 using Bits4 = std::uint64_t __attribute__((vector_size(4 * sizeof(std::uint64_t))));
 
-// Signs of four pairs, in bits.
+// Holds the signs of four pairs, in the bits of PairSigns.
 struct FourSigns {
   Bits4 above{}, below{};
 
@@ -78,6 +78,7 @@ struct FourSigns {
   }
 };
 
+// Returns the signs that doubles tell.
 [[gnu::always_inline]] inline FourSigns signs_of(const FourPairs& four) {
   FourSigns signs;
   const auto& a = four.a;
@@ -86,8 +87,8 @@ struct FourSigns {
     signs.set(k, four.above_b[k], four.bound);
     signs.set(kHeightsOfB + k, four.above_a[k], four.bound);
   }
-  // On which side edges of a pass those of b, by Plücker coordinates about b's first corner, where
-  // only its second edge has a moment. The volumes of one edge of a add up to what it rises.
+  // Plücker coordinates tell on which side edges of a pass those of b. About b's first corner only
+  // b's second edge has a moment, and the volumes of one edge of a add up to what it rises.
   for (unsigned i = 0; i < 3; ++i) {
     const unsigned next = (i + 1) % 3, bit = kEdges + 3 * i;
     const Vec3x4 moment = cross(a[i], a[next]);
@@ -133,6 +134,7 @@ template <class Bits>
   return mask_of(converted<Int4>((of_a & of_b) == 7));
 }
 
+// Finds how one pair meets, from what doubles tell and exact signs where these leave one open.
 class Crossing {
  public:
   Crossing(const PlacedTriangle& a, const PlacedTriangle& b, const PairSigns& signs)
@@ -164,7 +166,7 @@ class Crossing {
   Meeting meeting(Meeting found) const { return has_zero_ ? Meeting::undecided : found; }
 
   bool is_open(unsigned bit) const { return ((signs_.above | signs_.below) >> bit & 1) == 0; }
-  // Sets a bit that doubles leave open by the exact sign.
+  // Sets a sign that doubles leave open to the exact one.
   void decide(unsigned bit, Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
     const int exact = -orientation(p, q, r, s);
     (exact > 0 ? signs_.above : signs_.below) |= 1u << bit;
@@ -213,8 +215,8 @@ class Crossing {
   bool has_zero_ = false;
 };
 
-// Drops the pairs that heights over planes tell to be apart: half of them and more, for a third of
-// what the volumes of edges take.
+// Drops the pairs that heights over planes tell to be apart: half of all or more, for a third of
+// the time that the volumes of edges take.
 VPM_VECTOR_CLONES
 void drop_on_one_side(std::span<const PlacedTriangle> a, std::span<const PlacedTriangle> b,
                       std::vector<CandidatePair>& pairs) {

@@ -15,6 +15,7 @@ namespace vpm {
 class WideSum {
  public:
   void add(double term) { add(term, high_, low_); }
+  // Adds the parts of a term, or of several side by side, to the sums of these parts.
   template <class Number>
   [[gnu::always_inline]] static void add(const Number& term, Number& high_sum, Number& low_sum) {
     const Number high = (term + kHigh) - kHigh;
@@ -41,7 +42,7 @@ class WideVec3 {
   WideSum x_, y_, z_;
 };
 
-// Sums side by side, four in each element.
+// 4 N sums side by side, four in each element; that of term k is in lane k % 4 of element k / 4.
 template <std::size_t N>
 class WideSums {
  public:

@@ -116,7 +116,7 @@ class Triangles {
   double size_;
 };
 
-// Returns what doubles tell of pairs of triangles with one place; nothing of those that are apart.
+// Returns what doubles tell of the pairs p[k], q[k]; nothing of those that they tell to be apart.
 std::vector<std::optional<PairSigns>> told(const std::vector<PlacedTriangle>& p,
                                            const std::vector<PlacedTriangle>& q) {
   std::vector<CandidatePair> pairs;
