@@ -335,12 +335,12 @@ void make_holes(DepthImage& image, std::uint64_t seed) {
   }
 }
 
-// Counts samples of which only that was told which counts: that they are wholly behind the surface,
-// by less than `deepest`, m; and those that are deeper.
+// Counts samples of which is told only that they are wholly behind the surface, by less than
+// `deepest`, m, and those that are deeper.
 struct Told {
   int only_side = 0, deeper = 0;
 };
-// Expects of samples in the rig's frame what each of them alone would be told.
+// Expects of samples in the rig's frame what is told of each of them alone.
 void expect_samples_of_each(const RigSurface::View& view, std::span<const CellSample> samples,
                             double deepest, Told& told) {
   std::vector<SurfaceOfSample> reached(samples.size());
@@ -430,19 +430,21 @@ RigBody any_rig(int count, std::uint32_t seed) {
   return RigBody(std::move(images));
 }
 
-// Of most places of a block it is enough to know on which side they are; that changes no bit.
+// Of most places of a block it is enough to know on which side they are. What is told of the others
+// has the bits of each alone.
 TEST(RigOfAnyScene, SamplesOfABlockAreThoseOfEachAlone) {
   Told told;
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const RigBody rig = any_rig(2 + static_cast<int>(seed % 4), seed);
     const RigSurface surface = rig.surface();
-    const std::vector<Vec3> centers = places(1500, 0.2), offs = places(16, 1);
+    const std::vector<Vec3> centers = places(1500, 0.2), offsets = places(16, 1);
     for (std::size_t k = 0; k < centers.size(); ++k) {
       const double size = 0.002 + 0.02 * std::abs(std::sin(4.1 * static_cast<double>(k)));
       const Vec3 center = inverse(rig.to_world()) * centers[k];
       std::vector<CellSample> samples;
-      for (const Vec3& off : offs)
-        samples.push_back({narrow(center + 0.6 * size * off), static_cast<float>(0.2 * size), 1});
+      for (const Vec3& offset : offsets)
+        samples.push_back(
+            {narrow(center + 0.6 * size * offset), static_cast<float>(0.2 * size), 1});
       const double deepest = k % 2 == 0 ? HUGE_VAL : 0.04;
       expect_samples_of_each({&surface, surface.all_cameras()}, samples, deepest, told);
     }

@@ -11,8 +11,8 @@ namespace {
 
 using FourSamples = SurfaceSampleOf<Double4>;
 
-// Samples a surface; where it is surely further than `enough`, m, before x or behind it, but by
-// less than `deepest`, m, maybe only that.
+// Samples a surface. Where x is surely more than `enough`, m, before it, or more than that behind
+// it and less than `deepest`, m, maybe tells only that: any such distance.
 [[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x,
                                                     const Double4& /*enough*/, double /*deepest*/) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});

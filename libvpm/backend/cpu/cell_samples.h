@@ -37,7 +37,7 @@ void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
 // Samples the surface for those tool samples that it reaches, whose distance is less than their
 // radius, and those where none is known. Writes them in order to `on_surface_at` and returns their
 // number. Of samples wholly behind the surface, by less than `deepest`, m, it may tell only that:
-// any such distance, and no foot.
+// any such distance, and neither normal nor foot.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, double deepest,
                              SurfaceOfSample* on_surface_at);

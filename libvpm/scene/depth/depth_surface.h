@@ -295,16 +295,16 @@ struct DepthSurface : DepthSampler {
     const std::int32_t wide = p.u1 - p.u0, tall = p.v1 - p.v0;
     const int least = exponent_of(static_cast<std::uint32_t>(wide > tall ? wide : tall)) - 2;
     const int level = least < 0 ? 0 : least < levels ? least : levels - 1;
-    const std::int32_t u0 = p.u0 >> level, v0 = p.v0 >> level, columns = (p.u1 >> level) - u0;
+    const std::int32_t u0 = p.u0 >> level, v0 = p.v0 >> level, last = (p.u1 >> level) - u0;
     const double size = std::int32_t{1} << level, middle = 0.5 * (size - 1);
     const double first_u = u0 * size + middle;  // pixels, of the middle of a tile
     double at_v = v0 * size + middle;
     const InverseDepthRange* row = tiles[level] + (v0 * tiles_per_row(level) + u0);
     double low = HUGE_VAL, high = -HUGE_VAL;
-    for (std::int32_t rows = (p.v1 >> level) - v0; rows >= 0; --rows) {
+    for (std::int32_t rows_after = (p.v1 >> level) - v0; rows_after >= 0; --rows_after) {
       const double of_row = plane.per_v * at_v;
       double at_u = first_u;
-      for (std::int32_t u = 0; u <= columns; ++u) {
+      for (std::int32_t u = 0; u <= last; ++u) {
         const double affine = of_row + plane.per_u * at_u;
         const double off_low = row[u].low - affine, off_high = row[u].high - affine;
         low = off_low < low ? off_low : low;

@@ -174,7 +174,7 @@ struct RigReader {
     // The pixel of the place is on the far side if its surface is a step beyond the silhouette.
     const Mask is_far =
         camera.image.inverse_depth(reading.pixel, none) * depth < 1 - DepthSampler::kJump;
-    may_matter &= is_behind ^ is_far;
+    may_matter &= is_behind ^ is_far;  // on different sides of the silhouette
     if (!any(may_matter)) return;
     const Beside<Real> beside = find_beside(camera, at, reading, index);
     may_matter &= beside.may_matter;

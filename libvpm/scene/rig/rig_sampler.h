@@ -31,9 +31,9 @@ struct RigSampler {
   VPM_HD CameraSet all_cameras() const { return (CameraSet{1} << count) - 1; }
 
   // Samples the surface as these cameras see it, which are those that decide in a ball about x; as
-  // all do where each of them has something well before x, or none knows of x. Where the surface is
-  // surely further than `enough`, m, before x, only that is told: any such distance. So it is where
-  // the surface is surely further behind x, but by less than `deepest`, m.
+  // all do where each of them has something well before x, or none knows of x. Where x is surely
+  // more than `enough`, m, before the surface, only that is told: any such distance. So it is where
+  // x is surely more than `enough` behind the surface, and less than `deepest`, m.
   template <class Place>
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_near(
       const Place& x, CameraSet some, const RealOf<Place>& enough, double deepest = 0) const {
@@ -250,8 +250,8 @@ struct RigSampler {
            (2 * nearest.length > kRounding * nearest.apart);
   }
 
-  // True where all means are surely less than -`enough`, and the greatest is not below -`deepest`:
-  // it is within `apart` of the greatest reading that it holds.
+  // True where all means are surely less than -`enough`, and the greatest, which is within `apart`
+  // of the greatest reading that it holds, is surely more than -`deepest`.
   template <class Real>
   [[gnu::always_inline]] static VPM_HD MaskOf<Real> is_clearly_behind(const Nearest<Real>& nearest,
                                                                       const Real& enough,
