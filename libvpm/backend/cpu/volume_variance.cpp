@@ -7,6 +7,7 @@
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/measure/contact_patch.h"
 #include "libvpm/scene/mean_plane.h"
+#include "libvpm/scene/points/disk_windows.h"
 #include "libvpm/scene/surface_noise.h"
 
 namespace vpm {
@@ -24,8 +25,6 @@ constexpr double kOfBend = 0.125;
 // and by how much the cross-section of an edge errs between points, which do not lie on it, and
 // which noise moves across it, in squares of their sampling radius.
 constexpr double kOfEdge = 0.25;
-// Least cosine between the normals of points in a block without an edge.
-constexpr double kNoEdge = 0.9;
 // Most, in radii of a block, by which that mean height may be off the tangent plane: it is .1 in a
 // ball as small as the block, and noise adds to it; beyond there is an edge, which has no mean
 // plane.
@@ -64,7 +63,7 @@ class VarianceSum {
       if (const std::optional<TangentPlane> back = work_.surface.other_side(at))
         add_noise(cell, block, {true, back->distance(center), back->normal, back->foot, at.point});
     TangentPlane mean;
-    if (!mean_of_five(work_.surface, center, double{block.radius}, kAreDisks ? kNoEdge : 0,
+    if (!mean_of_five(work_.surface, center, double{block.radius}, kAreDisks ? kAlike : 0,
                       SampleTogether{}, mean)) {
       if constexpr (kAreDisks) add_edge(at.point, area / block.radius);
       return;
@@ -78,10 +77,10 @@ class VarianceSum {
     off_planes_ += off;
     squared_off_planes_ += off * off;
   }
-  // Adds the error of an edge of this length, m, by a point. That of all edges is alike.
+  // Adds the error of an edge of this length, m, near a point. All edges are taken to err alike.
   void add_edge(std::uint32_t point, double length) {
-    const double spacing = work_.surface.radii.of_points[point];
-    edge_ += spacing * spacing * length;
+    const double radius = work_.surface.radii.of_points[point];  // its sampling radius, m
+    edge_ += radius * radius * length;
   }
   // Adds the noise of the surface where its plane at a sample cuts a block. Returns that area, m^2.
   double add_noise(const CellView& cell, const CellBlock& block, const SurfaceSample& at) {
