@@ -86,8 +86,9 @@ struct GapSegments {
   int axis = 2;                      // direction of the lines
   double row = 0, column = 0;        // spacing of the lines along axis + 2 and axis + 1 (modulo 3)
   std::vector<GapSegment> segments;  // by sphere, then by row of lines
-  std::vector<std::uint32_t> begin;  // row offsets: where each sphere's begin; spheres + 1 entries
+  std::vector<std::uint32_t> begin;  // where each sphere's segments begin; spheres + 1 entries
 
+  // Returns the segments of a sphere.
   std::span<const GapSegment> of(std::size_t sphere) const {
     return std::span(segments).subspan(begin[sphere], begin[sphere + 1] - begin[sphere]);
   }
@@ -99,9 +100,9 @@ struct GapSegments {
   double volume(const GapSegment& segment) const { return row * column * double{segment.length}; }
 };
 
-// Returns the gap's segments. Inside is where the winding number is positive, so
-// that self-intersecting and nested shells count once. `spacing` is the largest distance of lines
-// and length of segments. Coordinates must be of magnitude 1.
+// Returns the gap's segments. Inside is where the winding number is positive, so that
+// self-intersecting and nested shells count once. `spacing` is the largest distance of lines and
+// length of segments. Coordinates must be of magnitude 1.
 GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double spacing);
 
 }  // namespace vpm

@@ -32,8 +32,8 @@ void halve(std::vector<Item>& items, std::size_t begin, std::size_t end) {
                    });
 }
 
-// Halves disjoint ranges, and their halves, down to `most` items. The result does not depend on the
-// number of threads.
+// Halves disjoint ranges [begin, end), and their halves, down to `most` items, which is 1 or more.
+// The result does not depend on the number of threads.
 template <class Item>
 void halve_down(std::vector<Item>& items, std::vector<std::array<std::size_t, 2>> ranges,
                 std::size_t most) {

@@ -380,7 +380,7 @@ class Check {
 
   // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
-    if (contacts_.empty() && facts().shells == 1) {  // all of it bounds
+    if (contacts_.empty() && facts().shells == 1) {  // all of it bounds the solid
       facts().volume = result_.enclosure.volume = mass_properties(result_.solid).volume;
       return;
     }

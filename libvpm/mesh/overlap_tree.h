@@ -38,7 +38,8 @@ class OverlapTree {
   std::uint64_t pairs_of(std::size_t group, Visit visit) const {
     const Node& leaf = nodes_[leaves_[group]];
     std::uint64_t compared = 0;
-    // Each level leaves at most one sibling. Levels halve the runs, then the items of one.
+    // Holds at most one sibling of each level, and there are fewer than 70 levels: they halve the
+    // runs of families, then the items of one.
     std::array<std::uint32_t, 128> stack;
     std::size_t top = 0;
     stack[top++] = 0;

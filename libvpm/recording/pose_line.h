@@ -1,4 +1,4 @@
-// Writes poses as lines that PoseReader reads, with times in whole nanoseconds.
+// Writes poses as lines that PoseReader reads, with times in seconds, exact to the nanosecond.
 #pragma once
 
 #include <cstdint>

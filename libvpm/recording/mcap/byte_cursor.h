@@ -48,6 +48,7 @@ class ByteCursor {
     return std::bit_cast<Number>(bytes);
   }
 
+  // Takes so many doubles.
   std::vector<double> numbers(std::size_t count) {
     std::vector<double> numbers;
     while (numbers.size() < count) numbers.push_back(number<double>());

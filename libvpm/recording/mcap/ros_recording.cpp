@@ -112,7 +112,8 @@ void find_intrinsics(const std::map<std::string, std::vector<std::byte>>& infos,
   }
 }
 
-// Passes over numbers that are no pose, as trackers write them where they are lost.
+// Adds the transforms of a message to the tree. Passes over numbers that are no pose, as trackers
+// write them where they are lost.
 void take_transforms(const Message& message, TransformTree& tree) {
   const bool are_fixed = message.channel.topic.ends_with("tf_static");
   for (const auto& [header, child, numbers] : read_transforms(message.bytes)) {
