@@ -30,7 +30,7 @@ bootstrap() {
 }
 
 # Mounts what programs expect in a root: processes; the kernel's settings, without which glibc takes no memory in large pages; and
-# pseudo-terminals, for what asks whether somebody sits before it, whose tests are skipped without.
+# pseudo-terminals, without which tests of what asks whether somebody sits before it are skipped.
 mount_in() {
   local root=$1
   mount -t proc proc "$root/proc" || return

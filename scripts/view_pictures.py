@@ -98,7 +98,8 @@ PICTURES = {
 
 
 def pictures(tools, example=None, quality=2):
-    """Yields (name, PNG) of each page. `quality` is the pixels drawn for one that is shown, along each side."""
+    """Yields (name, PNG) of each page. `quality` is how many pixels are drawn for one that is shown, along each side: 2 makes edges smooth,
+    which a page leaves out where a processor draws it."""
     with tempfile.TemporaryDirectory() as folder, headless_page.Browser() as browser:
         make_pages(tools, folder, example)
         for name, action in PICTURES.items():
@@ -116,7 +117,7 @@ def main():
     if not headless_page.program():
         sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
     output.mkdir(parents=True, exist_ok=True)
-    for name, png in pictures(tools, sys.argv[3] if len(sys.argv) > 3 else None):  # smooth edges, which a processor leaves out
+    for name, png in pictures(tools, sys.argv[3] if len(sys.argv) > 3 else None):
         save(png, output / f"{name}.png")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -IS
-"""Does what validate_json.py does, in a fork of the one that serves at the socket $VALIDATION_SOCKET: its library takes longer to
-load than a check, and this program none."""
+"""Does what validate_json.py does, by asking the one that serves at the socket $VALIDATION_SOCKET: that has loaded its library, which
+takes longer than a check."""
 import os
 import socket
 import sys

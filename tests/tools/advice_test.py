@@ -162,12 +162,12 @@ class Tools:
     def __init__(self, bin_folders, folder):
         self.folder = folder
         self.environment = dict(os.environ, LC_ALL="C", PATH=bin_folders + ":" + os.environ["PATH"])
-        self.done = {}  # by command
+        self.done = {}  # how each command ended
         self.met = {}  # what each refused command said
         self.lacks_formats = False
 
     def run(self, command):
-        """Runs a command, or returns what it did before."""
+        """Returns how a command ends, which is run once."""
         if command not in self.done:
             self.done[command] = self.run_anew(command)
         return self.done[command]

@@ -81,7 +81,7 @@ def renewed(expected, actual):
 
 @contextlib.contextmanager
 def validation_server(environment):
-    """Serves `$VALIDATE`: names its socket in the environment."""
+    """Runs the server that `$VALIDATE` asks, and names its socket in the environment."""
     with tempfile.TemporaryDirectory() as folder:
         environment["VALIDATION_SOCKET"] = f"{folder}/socket"
         with subprocess.Popen([SOURCE / "tests/formats/validate_json.py", "--serve", f"{folder}/socket"],

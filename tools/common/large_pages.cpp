@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kLargePage = std::size_t{2} << 20;  // bytes
 
-// Asks for large pages wherever a block has a part of one, and in the heap after it: a page that is
-// touched before, by what malloc() notes behind a block, keeps small ones about it. A kernel that
-// has none says so, and nothing changes.
+// Asks for large pages wherever a block has a part of one, and for the heap after it: malloc()
+// writes behind a block, and what is touched before it is asked for keeps small pages. A kernel
+// that has no large ones says so, and nothing changes.
 void ask_for_large_pages(void* block, std::size_t size) {
   const auto address = reinterpret_cast<std::uintptr_t>(block),
              heap_end = reinterpret_cast<std::uintptr_t>(sbrk(0));
@@ -35,8 +35,8 @@ void ask_for_large_pages(void* block, std::size_t size) {
 // is not mapped on its own, and twice as much free memory.
 constexpr int kLargestKept = 32 << 20, kKept = 2 * kLargestKept;  // bytes
 
-// Sets these, and takes address space for the heap in pieces as large. Asks for large pages in the
-// first of them, from which most blocks come.
+// Sets these two, and lets the heap grow by as much as the former. Asks for large pages in the
+// first part of it, from which most blocks come.
 [[maybe_unused]] const bool keeps_memory = [] {
   const bool is_set = mallopt(M_MMAP_THRESHOLD, kLargestKept) != 0 &&
                       mallopt(M_TRIM_THRESHOLD, kKept) != 0 &&

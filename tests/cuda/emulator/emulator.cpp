@@ -50,7 +50,7 @@ class Stack {
 // Names what a thread waits for.
 enum class Wait : std::uint8_t { none, exchange, vote, block };
 
-// Runs one thread of a block after another: it begins once, and waits for the next after each.
+// Runs a thread of one block, then one of the next: it begins once, and waits between them.
 struct Fiber {
   Stack stack;
   ucontext_t context{};  // where it begins; under AddressSanitizer, also where it goes on
@@ -66,7 +66,8 @@ struct Fiber {
 #endif
 };
 
-// Runs the threads of one block after another, on one thread of the host at a time.
+// Runs blocks one after another, with a fiber for each of their threads, on one thread of the host
+// at a time, which need not be the same for all blocks.
 class BlockRunner {
  public:
   void run(const Launch& launch, unsigned block, const std::function<void()>& kernel);
@@ -275,8 +276,8 @@ void BlockRunner::run(const Launch& launch, unsigned block, const std::function<
   runner = nullptr;
 }
 
-// Runners that are idle keep their stacks: to take and give back the pages of a block's threads
-// costs as much as many kernels.
+// Keeps the runners that are idle, with their stacks: to take and give back the pages of a block's
+// threads costs as much as many kernels.
 class IdleRunners {
  public:
   std::unique_ptr<BlockRunner> take() {

@@ -14,8 +14,8 @@
 
 namespace emulator {
 
-// Time that a question whether work has ended waits for it: callers ask again and again, and take
-// the processor from the device otherwise, which here is threads of the host.
+// How long a question whether work has ended waits for its end: callers ask again and again, and
+// would take the processor from the device, whose threads are those of the host.
 constexpr std::chrono::milliseconds kPatience{1};
 
 class Stream {
