@@ -382,6 +382,7 @@ class Check {
   void drop_inner_shells() {
     if (contacts_.empty() && facts().shells == 1) {  // all of it bounds the solid
       facts().volume = result_.enclosure.volume = mass_properties(result_.solid).volume;
+      if (progress_) progress_(1);
       return;
     }
     const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1));

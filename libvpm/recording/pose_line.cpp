@@ -8,7 +8,8 @@ namespace vpm {
 
 std::string seconds_text(std::uint64_t nanoseconds) {
   char text[32];
-  std::snprintf(text, sizeof text, "%lu.%09lu", nanoseconds / kSecond, nanoseconds % kSecond);
+  std::snprintf(text, sizeof text, "%lu.%09lu", nanoseconds / kNanosecondsPerSecond,
+                nanoseconds % kNanosecondsPerSecond);
   return text;
 }
 

@@ -7,7 +7,7 @@
 
 namespace vpm {
 
-inline constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
+inline constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 
 // Returns a time in seconds, with all its digits: "1700000000.123456789".
 std::string seconds_text(std::uint64_t nanoseconds);

@@ -63,14 +63,21 @@ void NoiseSum<DiskSurface>::add(const SurfaceSample& at, double area) {
   const double reach = kDisks * surface_.radii.of_points[at.point];
   double sum = 0;
   std::uint32_t count = 0;
-  surface_.feet.for_points_in_ball(at.foot, reach * reach, [&](std::uint32_t i) {
-    const Vec3 normal = widen(surface_.normals[i]);
-    if (dot(normal, at.normal) < kAlike) return true;  // beyond a crease, or a thin plate
-    const double height = dot(normal, widen(surface_.measured[i]) - widen(surface_.feet.points[i]));
-    sum += height * height;
-    ++count;
-    return true;
-  });
+  // Adds the disks whose normals have this cosine with the surface's, or more.
+  const auto add_disks = [&](double least) {
+    surface_.feet.for_points_in_ball(at.foot, reach * reach, [&](std::uint32_t i) {
+      const Vec3 normal = widen(surface_.normals[i]);
+      if (dot(normal, at.normal) < least) return true;
+      const double height =
+          dot(normal, widen(surface_.measured[i]) - widen(surface_.feet.points[i]));
+      sum += height * height;
+      ++count;
+      return true;
+    });
+  };
+  add_disks(kAlike);  // not those beyond a crease, or a thin plate
+  // On a crease, whose normal is a mean, no disk may be alike.
+  if (count == 0) add_disks(0);
   if (count == 0) return;
   const double of_point = sum / count, per_point = kPi * reach * reach / count;  // m^2
   variance_ += area * of_point * per_point;

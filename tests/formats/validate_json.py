@@ -77,7 +77,7 @@ def serve(address):
             os.fchdir(handles[3])
             schema, *names = message.decode().split("\0")
             sys.exit(check(schema, names))
-        client.send(bytes([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])]))
+        client.send(bytes([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) & 255]))
         for handle in handles:
             os.close(handle)
         client.close()

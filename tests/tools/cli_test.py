@@ -86,7 +86,8 @@ def validation_server(environment):
         environment["VALIDATION_SOCKET"] = f"{folder}/socket"
         with subprocess.Popen([SOURCE / "tests/formats/validate_json.py", "--serve", f"{folder}/socket"],
                               stdout=subprocess.PIPE) as server:
-            server.stdout.readline()
+            if not server.stdout.readline():
+                sys.exit(server.wait())  # it has said why
             try:
                 yield
             finally:

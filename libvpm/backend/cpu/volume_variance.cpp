@@ -13,7 +13,8 @@
 namespace vpm {
 namespace {
 
-// Deviations, measured by `vpm-bench accuracy` where the truth is known (measure/README.md):
+// Deviations, measured by `vpm-bench accuracy`, and by `vpm-bench intervals` for edges, where the
+// truth is known (measure/README.md):
 // by how much a cut sample errs, in parts of its volume, since it is no ball;
 constexpr double kOfSample = 0.031;
 // by how much the surface lies off the planes of blocks, of what its mean height over each differs

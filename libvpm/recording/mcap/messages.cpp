@@ -20,8 +20,9 @@ std::string read_frame(ByteCursor& cursor) {
 Header read_header(ByteCursor& cursor) {
   const auto seconds = cursor.number<std::int32_t>();
   const auto nanoseconds = cursor.number<std::uint32_t>();
-  return {seconds < 0 ? 0 : kSecond * static_cast<std::uint64_t>(seconds) + nanoseconds,
-          read_frame(cursor)};
+  return {
+      seconds < 0 ? 0 : kNanosecondsPerSecond * static_cast<std::uint64_t>(seconds) + nanoseconds,
+      read_frame(cursor)};
 }
 
 // Returns the rows of an image as an array of NumPy, without what pads them.

@@ -22,6 +22,8 @@ thread_local constinit dim3 threadIdx, blockIdx, blockDim, gridDim;
 namespace emulator {
 namespace {
 
+constexpr std::uint64_t kNotWritten = 0xA5A5'A5A5'A5A5'A5A5;
+
 [[noreturn]] void fail(const char* message) {
   std::fprintf(stderr, "CUDA emulator: %s (block %u, thread %u)\n", message, blockIdx.x,
                threadIdx.x);
@@ -252,7 +254,9 @@ void BlockRunner::run(const Launch& launch, unsigned block, const std::function<
   blockIdx = dim3(block);
   blockDim = dim3(launch.threads);
   gridDim = dim3(launch.blocks);
-  shared_memory_.resize((launch.shared_bytes + 7) / 8);
+  // New for each block, and of its size: sanitizers see accesses beyond it, and reads before any
+  // write show.
+  shared_memory_ = std::vector<std::uint64_t>((launch.shared_bytes + 7) / 8, kNotWritten);
   warps_.assign((threads_ + kLanes - 1) / kLanes, Warp{});
   while (fibers_.size() < threads_) {
     fibers_.push_back(std::make_unique<Fiber>());
@@ -300,7 +304,7 @@ class IdleRunners {
 // Runs every `step`-th block of a launch from `first` on.
 void run_blocks(const Launch& launch, unsigned first, unsigned step,
                 const std::function<void()>& kernel) {
-  static IdleRunners idle;
+  static IdleRunners& idle = *new IdleRunners;  // for streams that outlive main()
   std::unique_ptr<BlockRunner> blocks = idle.take();
   for (unsigned b = first; b < launch.blocks; b += step) blocks->run(launch, b, kernel);
   idle.give_back(std::move(blocks));
