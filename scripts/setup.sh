@@ -114,28 +114,39 @@ build_targets() {
   (cd "$repository" && cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$@"})
 }
 
+# Options of a build without tests.
+alone=(-DVPM_BENCH=OFF -DVPM_TESTS=OFF -DVPM_CUDA=OFF)
+
+# Builds the library of queries in a new build folder, which needs query_packages alone, while install_meanwhile goes on, and
+# waits for that. Sets `more` to the options that the rest needs then.
+build_queries_meanwhile() {
+  more=()
+  if [ ! -e "$repository/build/release/build.ninja" ]; then
+    configure "${alone[@]}" -DVPM_SOLID=OFF -DVPM_EXR=OFF
+    build_targets vpm
+    more=(-DVPM_SOLID=ON -DVPM_EXR=ON)
+  fi
+  wait_for_packages
+}
+
 # Builds everything: programs, benchmarks and tests, with device code where there is nvcc, and the Python module where there is
 # pybind11.
 build() {
-  local more
-  mapfile -t more < <(cuda_options)
-  if is_installed pybind11-dev && is_installed libdlpack-dev; then more+=(-DVPM_PYTHON=ON); fi
+  local more device
   say "Building into build/release (the first time takes some minutes)"
-  configure -DVPM_CUDA=AUTO "${more[@]}"
+  build_queries_meanwhile
+  mapfile -t device < <(cuda_options)
+  if is_installed pybind11-dev && is_installed libdlpack-dev; then more+=(-DVPM_PYTHON=ON); fi
+  configure -DVPM_CUDA=AUTO "${device[@]}" "${more[@]}"
   build_targets
 }
 
 # Builds the four tools and the program that makes the demo's example. A new build folder is configured for these alone; one
-# that has tests or device code keeps them. The library of queries is built while install_meanwhile goes on.
+# that has tests or device code keeps them.
 build_demo() {
+  local more
   say "Building into build/release (the first time takes some minutes)"
-  if [ ! -e "$repository/build/release/build.ninja" ]; then
-    local alone=(-DVPM_BENCH=OFF -DVPM_TESTS=OFF -DVPM_CUDA=OFF)
-    configure "${alone[@]}" -DVPM_SOLID=OFF -DVPM_EXR=OFF
-    build_targets vpm
-    wait_for_packages
-    configure "${alone[@]}" -DVPM_SOLID=ON -DVPM_EXR=ON
-  fi
-  wait_for_packages
+  build_queries_meanwhile
+  if [ ${#more[@]} -gt 0 ]; then configure "${alone[@]}" "${more[@]}"; fi
   build_targets demo_programs
 }

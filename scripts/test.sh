@@ -5,11 +5,10 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-install_packages "${packages[@]}" "${test_packages[@]}"
+install_packages "${query_packages[@]}"
 # shellcheck disable=SC2086  # several words
-install_meanwhile "${test_run_packages[@]}" ${VPM_CHECKERS:-}
+install_meanwhile "${packages[@]}" "${test_packages[@]}" "${test_run_packages[@]}" ${VPM_CHECKERS:-}
 build
-wait_for_packages
 say "Running the tests"
 # Takes memory in large pages where the kernel leaves that to programs: touching it for the first time is a fifth of what the
 # tests cost.
