@@ -128,7 +128,8 @@ cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpy
 }
 cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind,
                             cudaStream_t stream) {
-  emulator::enqueue(stream, [=] { std::memcpy(to, from, bytes); });
+  // Of no bytes, places may be null.
+  if (bytes > 0) emulator::enqueue(stream, [=] { std::memcpy(to, from, bytes); });
   return cudaSuccess;
 }
 cudaError_t cudaMemset(void* place, int value, std::size_t bytes) {
