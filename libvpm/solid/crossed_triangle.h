@@ -43,7 +43,8 @@ struct CrossedTriangle {
   [[gnu::always_inline]] void add(double sign, Vec3 p, Vec3 q) {
     const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
     const Vec3 mean = size / 3 * (corner[0] + p + q), total = corner[0] + p + q;
-    // Means of products (mean_products), four and two at once.
+    // Computes what mean_products() does, in vectors: the products xx, yy, zz and xy in one of
+    // them, xz and yz in the other.
     Double4 four{}, two{};
     for (const Vec3& v : {corner[0], p, q, total}) {
       four += Double4{v.x, v.y, v.z, v.x} * Double4{v.x, v.y, v.z, v.y};

@@ -31,9 +31,10 @@ using vpm::absolute, vpm::mask_of;
 [[gnu::always_inline]] inline Floats side_by_side(const Float4& b, const Float4& a) {
   return __builtin_shuffle(row(b), row(a), Ints{0, 1, 2, 3, 8, 9, 10, 11});
 }
-// These spread values over eight pairs of children: twice those of one node's four, from the lower
-// or the upper lanes, and four times each those of two of the other node's, from lane `first` (0 or
-// 2) on.
+// Eight lanes stand for pairs of children: of each of two children of one node with all four of the
+// other. twice() gives each lane the value of the one of the four, from the lower lanes;
+// upper_twice() takes the upper lanes instead. fourfold() gives each lane the value of the one of
+// the two, which are in lanes `first` (0 or 2) and `first` + 1.
 [[gnu::always_inline]] inline Floats twice(const Floats& v) {
   return __builtin_shuffle(v, Ints{0, 1, 2, 3, 0, 1, 2, 3});
 }
@@ -218,8 +219,9 @@ struct PairSizes {
 
 }  // namespace
 
-// Pushes what is to be opened of two nodes whose children meet: the larger of two, or both where
-// their sizes are alike.
+// Puts the pairs of children of two nodes that meet on the stack, in three sets of bits: of a pair
+// of which a's child, or b's, is larger, that child alone is opened next; of a pair that is alike
+// in size, both are.
 void TreeWalk::push(const SurfaceTree& a, const SurfaceTree& b, Place place, unsigned larger_of_a,
                     unsigned larger_of_b, unsigned alike) {
   const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];

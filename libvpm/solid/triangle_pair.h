@@ -65,8 +65,8 @@ struct TriangleCrossing {
 void drop_apart(std::span<const PlacedTriangle> a, std::span<const PlacedTriangle> b,
                 std::vector<CandidatePair>& pairs, std::vector<PairSigns>& signs);
 
-// Finds how two triangles meet of which drop_apart() told the signs, and fills `crossing` where
-// they cross.
+// Returns how two triangles meet, and fills `crossing` where they cross. `signs` are what
+// drop_apart() told of the two.
 Meeting cross_triangles(const PlacedTriangle& a, const PlacedTriangle& b, const PairSigns& signs,
                         TriangleCrossing& crossing);
 

@@ -11,8 +11,9 @@ namespace {
 
 using FourSamples = SurfaceSampleOf<Double4>;
 
-// Samples a surface. Where x is surely more than `enough`, m, before it, or more than that behind
-// it and less than `deepest`, m, maybe tells only that: any such distance.
+// Samples a surface at four places. Two kinds of places may get any distance that tells no more
+// than what they are: those surely more than `enough`, m, before the surface, and those surely
+// between `enough` and `deepest`, m, behind it.
 [[gnu::always_inline]] inline FourSamples sample_at(const DepthSurface& surface, const Vec3x4& x,
                                                     const Double4& /*enough*/, double /*deepest*/) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});

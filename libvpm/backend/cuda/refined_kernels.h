@@ -293,8 +293,8 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   if (threadIdx.x == 0) *launch.state = BatchState{};
 }
 
-// Answers the poses of a batch by single blocks. A block that has answered a pose takes the next
-// one that no block has.
+// Answers the poses of a batch, each by one block. A block that has finished a pose goes on with
+// the first pose of the batch that no block has begun.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     many_poses(const __grid_constant__ BatchLaunch<Surface> launch, const Pose* to_surfaces,

@@ -14,8 +14,9 @@
 
 namespace emulator {
 
-// How long a question whether work has ended waits for its end: callers ask again and again, and
-// would take the processor from the device, whose threads are those of the host.
+// Longest time for which cudaStreamQuery() and cudaEventQuery() wait for work to end before they
+// tell that it has not. Callers ask again at once, and would take the processor from the device,
+// whose threads are those of the host.
 constexpr std::chrono::milliseconds kPatience{1};
 
 class Stream {
