@@ -227,3 +227,13 @@ $ echo '{"intrinsics": [60, 60, 31.5, 23.5], "camera-pose": [1, 2, 3, 0, 0, 0, 1
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose '0 0 0.95'
 2> vpm-query: error: --pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0 0 0.95'
 [2]
+
+# Files of the current folder are no libraries, whatever their names.
+$ for library in libpng16.so.16 libtbb.so.12 libstdc++.so.6 libvpm.so.0 libvpm_voxels.so; do echo none > $library; done
+$ for program in vpm-pack vpm-graph vpm-normals vpm-query vpm-bench; do $program --version; done
+vpm-pack 0.1.0
+vpm-graph 0.1.0
+vpm-normals 0.1.0
+vpm-query 0.1.0
+vpm-bench 0.1.0
+$ vpm-query --tool cube.off --solid cube.off --pose 0,0,0,0,0,0,1 -o here.jsonl --quiet && rm lib*.so*
