@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")  # the first begins soonest
 # WebGL by the processor: test machines have no graphics.
 OPTIONS = ("--headless", "--no-sandbox", "--remote-debugging-pipe", "--use-gl=angle", "--use-angle=swiftshader",
            "--enable-unsafe-swiftshader", "--hide-scrollbars", "--no-first-run", "--disable-extensions",
@@ -175,7 +175,7 @@ def main():
         print(__doc__, file=sys.stderr)
         return 2
     if not program():
-        sys.exit("headless_page.py: there is no Chromium; install it (Debian: chromium)")
+        sys.exit("headless_page.py: there is no Chromium; install it (Debian: chromium-headless-shell)")
     with Browser() as browser:
         page = browser.open(pathlib.Path(sys.argv[1]).resolve())
         if len(sys.argv) == 4:

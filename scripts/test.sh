@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test. VPM_CHECKERS names further packages, whose tests are skipped without
-# them, such as "chromium clang-format-14".
+# them, such as "chromium-headless-shell clang-format-14".
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"

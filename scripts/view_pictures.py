@@ -115,7 +115,7 @@ def main():
     tools = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else REPOSITORY / "build/release/bin").resolve()
     output = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else REPOSITORY / "examples/pictures")
     if not headless_page.program():
-        sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
+        sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium-headless-shell)")
     output.mkdir(parents=True, exist_ok=True)
     for name, png in pictures(tools, sys.argv[3] if len(sys.argv) > 3 else None):
         save(png, output / f"{name}.png")

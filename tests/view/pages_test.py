@@ -467,7 +467,7 @@ def main():
             print("skipped: this build has no drawing library:", done.stderr)
             return 77
         if not headless_page.program():
-            print("skipped: there is no Chromium (Debian: chromium)")
+            print("skipped: there is no Chromium (Debian: chromium-headless-shell)")
             return 77
         make_demo()
         with headless_page.Browser() as browser:

@@ -37,7 +37,7 @@ def differing(kept, made):
 
 def main():
     if not headless_page.program() or not importlib.util.find_spec("PIL"):
-        print("skipped: needs Chromium and Pillow (Debian: chromium, python3-pil)")
+        print("skipped: needs Chromium and Pillow (Debian: chromium-headless-shell, python3-pil)")
         return 77
     import view_pictures  # which needs Pillow
     kept = REPOSITORY / "examples/pictures"
