@@ -98,6 +98,7 @@ Report run_replay(const SuiteOptions& options) {
   std::vector<std::function<void()>> parts;
   if (on_cpu) parts.emplace_back([&] { time_frames(options, report); });
   parts.emplace_back([&] { time_queries(tool, options, report); });
+  parts.emplace_back([&] { time_clutter(tool, options, report); });
   if (on_cpu) parts.emplace_back([&] { time_coherence(tool, options, report); });
   parts.emplace_back([&] { time_points_outside(tool, options, report); });
   parts.emplace_back([&] { run_stream(tool, folder, options, report); });

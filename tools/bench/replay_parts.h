@@ -25,10 +25,18 @@ struct ReplayTool {
 // Returns the seconds of each call, after `warm_up` calls that are not counted.
 Durations timed(int calls, int warm_up, const std::function<void(int call)>& body);
 
+// Returns the seconds that a call takes.
+double seconds_of(const std::function<void()>& body);
+
 // Times a query of a prepared frame, with warm and cold caches, beside hand-written alternatives.
 // The scene is a tilted wall with Kinect noise, 5 % of the tool inside. Uses 1 and 2 threads, or 1
 // beside a device.
 void time_queries(const ReplayTool& tool, const SuiteOptions& options, Report& report);
+
+// Times single queries at random poses in clutter, each level beside the distance grid of the tool
+// in the same run, and batches of such poses on a device: things on a table with noise and holes,
+// and the images in the suite's data that are known by name. 1 thread.
+void time_clutter(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
 // Times coherent poses beside the same poses on their own; steps of 0.5 mm, 1 thread.
 void time_coherence(const ReplayTool& tool, const SuiteOptions& options, Report& report);

@@ -70,12 +70,6 @@ void add_query(Report& report, const std::string& what, std::uint32_t spheres, i
   report.summary += line;
 }
 
-double seconds_of(const std::function<void(int)>& body, int call) {
-  const auto start = std::chrono::steady_clock::now();
-  body(call);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 // Times two functions in alternating calls, so that whatever the machine does meanwhile affects
 // both.
 std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
@@ -84,7 +78,7 @@ std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
   std::vector<double> a, b;
   for (int k = 0; k < warm_up + calls; ++k) {
     for (auto [body, seconds] : {std::pair(&first, &a), std::pair(&second, &b)}) {
-      const double took = seconds_of(*body, k);
+      const double took = seconds_of([&] { (*body)(k); });
       if (k >= warm_up) seconds->push_back(took);
     }
   }
@@ -124,10 +118,16 @@ Cloud sparse_grazing_view() {
 
 }  // namespace
 
+double seconds_of(const std::function<void()>& body) {
+  const auto start = std::chrono::steady_clock::now();
+  body();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 Durations timed(int calls, int warm_up, const std::function<void(int call)>& body) {
   std::vector<double> seconds;
   for (int k = 0; k < warm_up + calls; ++k) {
-    const double took = seconds_of(body, k);
+    const double took = seconds_of([&] { body(k); });
     if (k >= warm_up) seconds.push_back(took);
   }
   return Durations(std::move(seconds));
