@@ -78,10 +78,10 @@ Report run_pairs(const SuiteOptions& options);
 // solids, with one thread or with `threads`.
 Report run_peers(const SuiteOptions& options);
 
-// Runs a haptic loop on a recorded stream: queries of warm and cold clouds beside hand-written
-// alternatives, coherent poses, preparation of frames, a path through the stream, a soak of 10^6
-// queries. On a device it leaves out coherent poses and the preparation of frames, which only the
-// CPU does.
+// Runs a haptic loop on a recorded stream: queries in clutter and of warm and cold clouds beside
+// hand-written alternatives, coherent poses, preparation of frames, a path through the stream, a
+// soak of 10^6 queries. On a device it adds batches in clutter, and leaves out the alternatives
+// there, coherent poses and the preparation of frames, which only the CPU does.
 Report run_replay(const SuiteOptions& options);
 
 // Times queries on a CUDA device against the number of spheres and along a path. Throws
