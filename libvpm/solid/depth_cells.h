@@ -45,21 +45,22 @@ struct DepthCell {
 class DepthCells {
  public:
   // Integrates over the part of a cell inside by halving cells across their longest edges:
-  // a cell for which visitor.is_too_large(cell) holds is halved in any case, and one for which
-  // visitor.takes(cell) holds is finished, since the visitor has added it. Of any other cell
-  // visitor.value(cell) is computed. The visitor adds it by take(cell, value) if
-  // is_negligible(value), or if agree(value, first, second) finds that the values of both halves
-  // confirm it, which leaves the better one in `value`. Otherwise the same is done with each half.
+  // a cell for which visitor.is_too_large(cell) holds is halved in any case. Of any other one
+  // visitor.take_if_small(cell, weight) adds as much as it is small and returns the weight that is
+  // left. If that is any, visitor.value(cell) is computed. The visitor adds it by
+  // take(cell, value, weight) if is_negligible(value), or with the share of the weight that
+  // agreement(value, first, second) returns, as far as the values of both halves confirm it, which
+  // leaves the better one in `value`. For the rest of the weight the same is done with each half.
   // They share the bits of the points where segments cross from one to the other, and which corners
   // lie inside follows from these points: so parts add up to the whole. `normal` points out of the
   // triangle, of any length.
   template <class Visitor>
-  void run(const DepthCell& cell, Vec3 normal, Visitor& visitor) {
+  void run(const DepthCell& cell, Vec3 normal, double weight, Visitor& visitor) {
     segments_.assign(cell.segments.begin(), cell.segments.end());
     points_.assign(cell.points.begin(), cell.points.end());
     normal_ = normal;
     cut(Part{cell.corner, cell.is_inside, 0, 0, segments_.size(), points_.size()},
-        std::optional<typename Visitor::Value>(), visitor);
+        std::optional<typename Visitor::Value>(), weight, visitor);
   }
 
  private:
@@ -83,32 +84,32 @@ class DepthCells {
   }
 
   template <class Value, class Visitor>
-  void cut(const Part& part, std::optional<Value> value, Visitor& visitor) {
+  void cut(const Part& part, std::optional<Value> value, double weight, Visitor& visitor) {
     const DepthCell cell = cell_of(part);
     if (is_outside(cell)) return;
     const bool is_too_large = visitor.is_too_large(cell);
     if (!is_too_large) {
-      if (visitor.takes(cell)) return;
+      weight = visitor.take_if_small(cell, weight);
+      if (!(weight > 0)) return;
       if (!value) value = visitor.value(cell);
-      if (visitor.is_negligible(*value)) return visitor.take(cell, *value);
+      if (visitor.is_negligible(*value)) return visitor.take(cell, *value, weight);
     }
     const std::size_t segments = segments_.size(), points = points_.size();
     const std::array<Part, 2> half = halves(part);
     std::array<std::optional<Value>, 2> values;
-    bool is_taken = false;
     if (!is_too_large) {
       const std::array<DepthCell, 2> cells{cell_of(half[0]), cell_of(half[1])};
       if (is_outside(cells[0]) || is_outside(cells[1])) {
         values = {value, value};  // what lies in one half alone is what it was
       } else {
         values = {visitor.value(cells[0]), visitor.value(cells[1])};
-        is_taken = visitor.agree(*value, *values[0], *values[1]);
+        const double taken = weight * visitor.agreement(*value, *values[0], *values[1]);
+        if (taken > 0) visitor.take(cell_of(part), *value, taken);
+        weight -= taken;
       }
     }
-    if (is_taken)
-      visitor.take(cell_of(part), *value);
-    else
-      for (std::size_t k = 0; k < 2; ++k) cut(half[k], values[k], visitor);
+    if (weight > 0)
+      for (std::size_t k = 0; k < 2; ++k) cut(half[k], values[k], weight, visitor);
     segments_.resize(segments);
     points_.resize(points);
   }

@@ -187,7 +187,8 @@ void SurfacePair::note_force_of_split_cell(std::size_t which, const DepthCell& c
         of_part.add_far_point(point.sign, point.place);
     if (at_corner == part) of_part.add_corner_inside();
     LinearPiece linear = piece;
-    linear.force = linear_force(of_part.moments(), piece.depth, piece.place);
+    const ForceAndTorque f = linear_force(of_part.moments(), piece.depth, piece.place);
+    linear.force = {piece.weight * f.force, piece.weight * f.torque};
     linear.middle = middle_of(of_part);
     note_cut_force(which, part, linear, {}, 0);
   }

@@ -16,9 +16,9 @@ namespace {
 // slab's thickness relative to the depth, and the longest edge of triangles and
 // cells of triangles relative to the reach.
 constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.12;
-// Planes that cross a triangle stand for the depth below them if their mean
-// normal is so long; where they disagree there is a crease.
-constexpr double kAgreeing2 = 0.97;
+// Planes that cross a triangle stand for the depth below them if the square of their mean normal
+// misses 1 by less than this; where they disagree there is a crease.
+constexpr double kDisagreeing = 0.04;
 // Mean depth, relative to the smaller reach, from which on no piece is looked
 // at twice, and the least one that is told from none.
 constexpr double kDeep = 1.0 / 32, kLeastDepth = 1e-5;
@@ -33,11 +33,20 @@ constexpr double kSmallest = 0.1;
 constexpr double kForetelling = 4;
 // Cells of the other's grid by which depths below planes may differ from it.
 constexpr double kPlausibleCells = 0.1;
+// From what part of a limit on one way of sampling gives way to another: between, both are mixed,
+// so that forces do not jump. Of errors, and of sizes.
+constexpr double kMixedErrors = 0.5, kMixedSizes = 0.9;
 // Pieces that tell how deep thin solids are.
 constexpr std::size_t kProbes = 8;
 
 double square(double v) {
   return v * v;
+}
+
+// Returns the share of what is right up to a limit: 1 up to a part of it, and falling to 0 there.
+double share_below(double limit, double v, double part = kMixedErrors) {
+  if (v <= part * limit) return 1;
+  return v < limit ? (limit - v) / (limit - part * limit) : 0;
 }
 
 // Returns the force on what is below a node, where the depth is linear: `depth` at the place x.
@@ -105,8 +114,9 @@ double SurfacePair::depth_of_largest() {
   return areas > 0 ? sum / areas / 2 : 0;
 }
 
-bool SurfacePair::is_precise(double error, double area) const {
-  return error <= precision_.depth || error * area <= precision_.product;
+// Returns how far a mean error over an area may stay.
+double SurfacePair::share_of_precise(double error, double area) const {
+  return share_below(std::max(precision_.depth * area, precision_.product), error * area);
 }
 
 // Adds the forces on all that is inside, after all moments are summed.
@@ -132,7 +142,8 @@ void SurfacePair::add_force_of_whole(std::size_t which, std::uint32_t child) {
   while (!patches_.empty()) {
     auto [node, foretold] = patches_.back();
     patches_.pop_back();
-    if (add_force_of_patch(which, node, foretold)) continue;
+    foretold.weight -= add_force_of_patch(which, node, foretold);
+    if (!(foretold.weight > 0)) continue;
     for (const std::uint32_t below : roles_[which].tree->nodes()[node].child) {
       if (below == kNone) continue;
       if ((below & kLeaf) != 0)
@@ -143,32 +154,39 @@ void SurfacePair::add_force_of_whole(std::size_t which, std::uint32_t child) {
   }
 }
 
-// Adds the force on what is below a node, unless it is too large, too thick or
-// not as was foretold; then tells what to expect below.
-bool SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Foretold& foretold) {
+// Adds the force on what is below a node, less where it is not as was foretold and none where it is
+// too large or too thick; returns with what weight, and tells what to expect below.
+double SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Foretold& foretold) {
   Role& role = roles_[which];
   const SurfaceTree::Patch& patch = role.tree->patches()[node];
   const double most = kPatchRadius * role.solid->reach();
-  if (patch.radius > (precision_.size < 1 ? kForetelling * most : most)) return false;
+  if (patch.radius > (precision_.size < 1 ? kForetelling * most : most)) return 0;
   const Vec3 middle = widen(patch.middle);
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
   depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
   const double error = per_unit_ * std::abs(foretold.at(middle) - depth.value);
-  const bool is_as_foretold =
-      patch.radius <= precision_.size * most ||
-      (foretold.is_known && is_precise(error, per_unit_ * per_unit_ * patch.area));
-  foretold = {depth, middle, true};
-  if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !is_as_foretold)
-    return false;
-  const double unit3 = per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
+  const double share =
+      std::max(share_of_small(patch.radius, most),
+               foretold.is_known ? share_of_precise(error, per_unit_ * per_unit_ * patch.area) : 0);
+  const double weight = share * foretold.weight;
+  foretold.depth = depth, foretold.place = middle, foretold.is_known = true;
+  if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !(weight > 0))
+    return 0;
+  const double unit3 = weight * per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
   const ForceAndTorque f = linear_force_of(*role.tree, node, depth, middle);
   const ForceAndTorque added{unit3 * f.force, unit4 * f.torque};
   role.sums.whole_wrench.add(added.force, added.torque);
   const SurfaceTree::Summary& below = role.tree->summaries()[node];
   if (with_contacts_)
     note_force_of_whole(which, added, depth, middle, patch.radius, below.first, below.end);
-  return true;
+  return weight;
+}
+
+// Returns how far a piece is taken without a second look.
+double SurfacePair::share_of_small(double size, double most) const {
+  if (precision_.size < 1) return share_below(precision_.size * most, size, kMixedSizes);
+  return size <= most ? 1 : 0;
 }
 
 void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangle,
@@ -180,7 +198,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
   for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
   const Vec3 normal = normalized_or_zero(at.normal);
-  if (longest > most) return add_force_of_cells(which, cell, normal);
+  if (longest > most) return add_force_of_cells(which, cell, normal, before.weight);
   const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
@@ -188,10 +206,12 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   depth.gradient = transpose(role.to_other.rotation) * gradient;
   const double error = per_unit_ * std::abs(before.at(middle) - depth.value),
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
-  if (longest > precision_.size * most && !(before.is_known && is_precise(error, area)))
-    return add_force_of_cells(which, cell, normal);
+  const double share = std::max(share_of_small(longest, most),
+                                before.is_known ? share_of_precise(error, area) : 0);
+  if (share < 1) add_force_of_cells(which, cell, normal, (1 - share) * before.weight);
+  if (!(share > 0)) return;
   const ForceAndTorque f = linear_force(corners, depth, middle);
-  const double unit3 = per_unit_ * per_unit_ * per_unit_;
+  const double unit3 = share * before.weight * per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
   role.sums.whole_wrench.add(added.force, added.torque);
   if (with_contacts_)
@@ -217,7 +237,7 @@ void SurfacePair::add_force_of_crossed(std::size_t which, const CrossedTriangle&
   DepthCell cell{triangle.corner, {}, cut_segments_, cut_points_};
   for (std::size_t k = 0; k < 3; ++k)
     cell.is_inside[k] = is_inside(which, role.tree->triangles()[triangle.triangle][k]) ? 1 : 0;
-  add_force_of_cells(which, cell, triangle.normal);
+  add_force_of_cells(which, cell, triangle.normal, 1);
 }
 
 // Sums up the part inside of one cell after the other of a triangle.
@@ -237,15 +257,15 @@ class SurfacePair::CellVisitor {
         most2_(square(pair.per_unit_ * kCell * pair.roles_[role].solid->reach())),
         sampled2_(most2_),
         small2_(std::max(square(pair.precision_.size) * most2_, square(pair.precision_.smallest))) {
-    if (pair.precision_.size < 1) sampled2_ *= square(kForetelling);
+    if (pair.precision_.size < 1) sampled2_ *= square(kForetelling), small_part_ = kMixedSizes;
   }
 
   bool is_too_large(const DepthCell& cell) const { return cell.longest_edge2() > sampled2_; }
   bool is_large(const DepthCell& cell) const { return cell.longest_edge2() > most2_; }
-  bool takes(const DepthCell& cell) {
-    if (cell.longest_edge2() > small2_) return false;
-    pair_.add_force_of_small_cell(role_, cell, normal_);
-    return true;
+  double take_if_small(const DepthCell& cell, double weight) {
+    const double taken = weight * share_below(small2_, cell.longest_edge2(), small_part_);
+    if (taken > 0) pair_.add_force_of_small_cell(role_, cell, normal_, taken);
+    return weight - taken;
   }
 
   Value value(const DepthCell& cell) {
@@ -281,7 +301,7 @@ class SurfacePair::CellVisitor {
     return value.area * std::abs(value.sampled.depth.value) <= pair_.precision_.product;
   }
 
-  bool agree(Value& value, const Value& first, const Value& second) const {
+  double agreement(Value& value, const Value& first, const Value& second) const {
     const DepthIntegral &p = first.integral, &q = second.integral;
     const DepthIntegral sum{p.volume + q.volume, p.moment + q.moment};
     const double more = sum.volume - value.integral.volume;
@@ -289,19 +309,20 @@ class SurfacePair::CellVisitor {
     const double size = norm(first.sampled.place - second.sampled.place);
     const double error = std::max(std::abs(more), kShift * norm(shift) / size);
     value.integral = sum;
-    if (value.is_large && value.sampled.depth.value > kShallow * pair_.precision_.mean)
-      return false;
-    return std::min(first.area, second.area) >= kLeastHalf * value.area &&
-           (error <= pair_.precision_.depth * value.area || error <= pair_.precision_.product);
+    const Precision& precision = pair_.precision_;
+    const double least = std::min(first.area, second.area) / kLeastHalf;
+    return std::min({share_below(std::max(precision.depth * value.area, precision.product), error),
+                     1 - share_below(value.area, least),
+                     value.is_large ? share_below(kShallow * precision.mean, value.sampled.depth.value) : 1});
   }
 
-  void take(const DepthCell& cell, const Value& value) {
+  void take(const DepthCell& cell, const Value& value, double weight) {
     const auto& [volume, moment] = value.integral;
-    const ForceAndTorque f{-volume * normal_, -cross(moment, normal_)};
+    const ForceAndTorque f{-weight * volume * normal_, -weight * cross(moment, normal_)};
     pair_.roles_[role_].sums.cut_wrench.add(f.force, f.torque);
     const Foretold& s = value.sampled;
     if (pair_.with_contacts_)
-      pair_.note_force_of_cell(role_, cell, {s.depth, s.place, f, s.place}, normal_);
+      pair_.note_force_of_cell(role_, cell, {s.depth, s.place, f, s.place, weight}, normal_);
   }
 
  private:
@@ -319,13 +340,15 @@ class SurfacePair::CellVisitor {
   std::size_t role_;
   Vec3 normal_;
   double most2_, sampled2_, small2_;  // squared longest edges, in the unit
+  double small_part_ = 1;
 };
 
 // Adds the force on that part of a triangle of solid `which` that lies inside of the other solid,
 // cell by cell.
-void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& cell, Vec3 normal) {
+void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& cell, Vec3 normal,
+                                     double weight) {
   CellVisitor visitor(*this, which, normal);
-  cells_.run(cell, normal, visitor);
+  cells_.run(cell, normal, weight, visitor);
 }
 
 // Adds what bounds the part of a cell inside.
@@ -336,11 +359,13 @@ void SurfacePair::add_cuts(const DepthCell& cell, CrossedTriangle& part) {
   if (cell.is_inside[2] != 0) part.add_corner_inside();
 }
 
-void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& cell, Vec3 normal) {
+void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& cell, Vec3 normal,
+                                          double weight) {
   const auto& [a, b, c] = cell.corner;
   LinearPiece piece;
   if (cell.is_whole()) {
-    piece = add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, (a + b + c) / 3));
+    piece = add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, (a + b + c) / 3),
+                          weight);
   } else {
     CrossedTriangle part;
     part.corner = cell.corner, part.normal = normal;
@@ -349,8 +374,9 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
     if (!(area > 0)) return;  // rounding
     const Vec3 middle = part.mean() / area;
     Foretold linear = plane_across(which, cell.segments);
-    if (!is_plausible(which, linear, middle)) linear = depth_at(which, middle);
-    piece = add_cut_force(which, part.moments(), linear);
+    const double share = share_of_plausible(which, linear, middle);
+    linear = mixed_with_depth(which, linear, share, middle);
+    piece = add_cut_force(which, part.moments(), linear, weight);
     piece.middle = middle;
   }
   if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
@@ -365,24 +391,42 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
   if (!linear.is_known) return std::nullopt;
   const double area = triangle.area();
   const Vec3 middle = area > 0 ? triangle.mean() / area : triangle.corner[0];
-  if (squared_norm(linear.depth.gradient) < kAgreeing2 && area > 0)
-    linear = depth_at(which, middle);
-  LinearPiece piece = add_cut_force(which, triangle.moments(), linear);
+  if (area > 0) linear = mixed_with_depth(which, linear, share_of_agreeing(linear), middle);
+  LinearPiece piece = add_cut_force(which, triangle.moments(), linear, 1);
   piece.middle = middle;
   return piece;
 }
 
-// Returns whether the depth below the planes that cut a cell may stand for that at its middle: they
-// agree, and the other's grid agrees with them. Where it does not, another face is nearer, as
-// beside flush ones.
-bool SurfacePair::is_plausible(std::size_t which, const Foretold& below_planes, Vec3 middle) const {
-  if (!below_planes.is_known || squared_norm(below_planes.depth.gradient) < kAgreeing2)
-    return false;
+// Returns how far the planes that cut a piece agree.
+double SurfacePair::share_of_agreeing(const Foretold& below_planes) {
+  if (!below_planes.is_known) return 0;
+  return share_below(kDisagreeing, 1 - squared_norm(below_planes.depth.gradient));
+}
+
+// Returns how far the depth below the planes that cut a cell may stand for that at its middle: as
+// far as they agree, and the other's grid agrees with them. Where it does not, another face is
+// nearer, as beside flush ones.
+double SurfacePair::share_of_plausible(std::size_t which, const Foretold& below_planes,
+                                       Vec3 middle) const {
+  const double agreeing = share_of_agreeing(below_planes);
+  if (!(agreeing > 0)) return 0;
   const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
   const SolidSurface& other = *roles_[1 - which].solid;
   const double error =
       other.grid_depth(to_other * (unit_ * middle)) - unit_ * below_planes.at(middle);
-  return std::abs(error) <= kPlausibleCells * other.grid_cell();
+  return std::min(agreeing, share_below(kPlausibleCells * other.grid_cell(), std::abs(error)));
+}
+
+// Returns a share of the depth below planes, and for the rest that at a place.
+SurfacePair::Foretold SurfacePair::mixed_with_depth(std::size_t which, const Foretold& below_planes,
+                                                    double share, Vec3 place) {
+  if (!(share < 1)) return below_planes;
+  Foretold at = depth_at(which, place);
+  if (share > 0) {
+    at.depth.value += share * (below_planes.at(place) - at.depth.value);
+    at.depth.gradient += share * (below_planes.depth.gradient - at.depth.gradient);
+  }
+  return at;
 }
 
 // Returns the depth below the mean of the planes that cut a triangle, weighted
@@ -415,10 +459,11 @@ SurfacePair::Foretold SurfacePair::depth_at(std::size_t which, Vec3 place) {
 }
 
 SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments,
-                                                    const Foretold& linear) {
-  const ForceAndTorque f = linear_force(moments, linear.depth, linear.place);
+                                                    const Foretold& linear, double weight) {
+  const ForceAndTorque all = linear_force(moments, linear.depth, linear.place);
+  const ForceAndTorque f{weight * all.force, weight * all.torque};
   roles_[which].sums.cut_wrench.add(f.force, f.torque);
-  return {linear.depth, linear.place, f, linear.place};
+  return {linear.depth, linear.place, f, linear.place, weight};
 }
 
 }  // namespace vpm

@@ -88,12 +88,15 @@ class SurfacePair {
     Vec3 place;
     ForceAndTorque force;
     Vec3 middle = {};  // of the piece; set for contacts
+    double weight = 1;  // of the force
   };
-  // A depth that is linear near a place, which tells what to expect beside it.
+  // A depth that is linear near a place, which tells what to expect beside it, and the weight of
+  // the force there.
   struct Foretold {
     Depth depth;
     Vec3 place;
     bool is_known = false;
+    double weight = 1;
     double at(Vec3 x) const { return depth.value + dot(depth.gradient, x - place); }
   };
   // How finely the depth is sampled for the volume at hand; in the unit.
@@ -168,20 +171,25 @@ class SurfacePair {
   void add_forces();
   Precision precision();
   double depth_of_largest();
-  bool is_precise(double error, double area) const;
+  double share_of_precise(double error, double area) const;
+  double share_of_small(double size, double most) const;
   void add_force_of_crossed(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_whole(std::size_t role, std::uint32_t child);
   void add_force_of_triangle(std::size_t role, std::uint32_t triangle, const Foretold& before);
-  bool add_force_of_patch(std::size_t role, std::uint32_t node, Foretold& foretold);
-  void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal);
-  void add_force_of_small_cell(std::size_t role, const DepthCell& cell, Vec3 normal);
+  double add_force_of_patch(std::size_t role, std::uint32_t node, Foretold& foretold);
+  void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal, double weight);
+  void add_force_of_small_cell(std::size_t role, const DepthCell& cell, Vec3 normal, double weight);
   static void add_cuts(const DepthCell& cell, CrossedTriangle& part);
   std::optional<LinearPiece> add_force_of_cut(std::size_t role, const CrossedTriangle& triangle,
                                               std::span<const CutSegment> segments);
   Foretold plane_across(std::size_t role, std::span<const CutSegment> segments) const;
-  bool is_plausible(std::size_t role, const Foretold& below_planes, Vec3 middle) const;
+  static double share_of_agreeing(const Foretold& below_planes);
+  double share_of_plausible(std::size_t role, const Foretold& below_planes, Vec3 middle) const;
+  Foretold mixed_with_depth(std::size_t role, const Foretold& below_planes, double share,
+                            Vec3 place);
   Foretold depth_at(std::size_t role, Vec3 place);
-  LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear);
+  LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear,
+                            double weight);
 
   // Of contacts (surface_contacts.cpp).
   void note_whole(std::size_t role, std::uint32_t child);
