@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace vpm {
 namespace {
 
-// Slope where the plane is not known, in the unit that no coordinate exceeds.
-constexpr double kSteep = 1e3;
+// Segments so near to an end of what is inside of an edge tell the depth there, relative to the
+// length of what is inside.
+constexpr double kNear = 0.25;
 
 // A depth d(t) on the way from the border, t = 0, to a place of known depth, t = 1: it grows from 0
 // by `slope` and bends evenly to be `height` there. If it were more in between, it bends before, to
@@ -55,8 +57,9 @@ DepthIntegral DepthFan::integral(const DepthCell& cell, Vec3 normal, std::span<c
   normal_ = normal, center_ = center, depth_ = depth;
   depth_.value = std::max(depth.value, 0.0);
   volume_ = {}, moment_ = {};
+  segments_ = cell.segments, planes_ = planes;
   for (std::size_t k = 0; k < planes.size(); ++k) add_segment(cell.segments[k], planes[k]);
-  for (std::size_t edge = 0; edge < 3; ++edge) add_edge(cell, planes, edge);
+  for (std::size_t edge = 0; edge < 3; ++edge) add_edge(cell, edge);
   return {volume_.real(), moment_.real()};
 }
 
@@ -76,41 +79,48 @@ void DepthFan::add_segment(const CutSegment& segment, const Plane& plane) {
 }
 
 // Adds the parts of an edge that lie inside.
-void DepthFan::add_edge(const DepthCell& cell, std::span<const Plane> planes, std::size_t edge) {
+void DepthFan::add_edge(const DepthCell& cell, std::size_t edge) {
   const Vec3 a = cell.corner[edge], b = cell.corner[(edge + 1) % 3];
   along_.clear();
   for (const CutPoint& point : cell.points)
     if (point.edge == edge) along_.push_back({dot(point.place - a, b - a), &point});
   std::ranges::sort(along_, {}, [](const auto& p) { return std::pair(p.first, p.second->sign); });
-  const auto stop_at = [&](const CutPoint& point) {
-    Stop stop{point.place};
-    for (std::size_t k = 0; k < planes.size(); ++k)
-      if (point.place == (point.sign > 0 ? cell.segments[k].end : cell.segments[k].start))
-        stop.plane = &planes[k];
-    return stop;
-  };
   bool is_inside = cell.is_inside[edge] != 0;
-  Stop from{a, nullptr, true};
+  Vec3 from = a;
   for (const auto& [at, point] : along_) {
-    const Stop stop = stop_at(*point);
-    if (is_inside && point->sign < 0) add_interval(from, stop);
+    if (is_inside && point->sign < 0) add_interval(from, point->place);
     is_inside = point->sign > 0;
-    from = stop;
+    from = point->place;
   }
-  if (is_inside) add_interval(from, {b, nullptr, true});
+  if (is_inside) add_interval(from, b);
 }
 
-void DepthFan::add_interval(const Stop& from, const Stop& to) {
-  const double mean = mean_between(from, to), more = depth_.value - mean;
-  add(from.place, to.place, {mean + more / 3, mean / 3 + more / 6});
-  // How much deeper it is where it starts than where it ends, if it is linear there, by half.
-  const double first = foretold(from.place), last = foretold(to.place);
-  const double slope = from.is_corner && to.is_corner ? 0.5 * (first - last)
-                       : from.is_corner               ? first - mean
-                       : to.is_corner                 ? mean - last
-                                                      : 0;
-  const double area = 0.5 * dot(cross(from.place - center_, to.place - center_), normal_);
-  moment_.add(area * slope / 12 * (from.place - to.place));
+// Adds the triangle from the centre over a part of an edge. As far as segments are near an end, the
+// depth is 0 there and rises as below their planes, else it is what is foretold.
+void DepthFan::add_interval(Vec3 p, Vec3 q) {
+  const End from = end_at(p, q), to = end_at(q, p);
+  const double first = from.foretold, last = to.foretold;
+  double mean = 0, slope = 0;  // how much deeper it is at p than at q, if it is linear there
+  const auto take = [&](double share, const auto& mean_and_slope) {
+    if (!(share > 0)) return;
+    const auto [m, s] = mean_and_slope();
+    mean += share * m, slope += share * s;
+  };
+  take((1 - from.share) * (1 - to.share),
+       [&] { return std::pair(0.5 * (first + last), 0.5 * (first - last)); });
+  take(from.share * (1 - to.share), [&] {
+    const double m = Rise(from.slope, last, first).along();
+    return std::pair(m, m - last);
+  });
+  take((1 - from.share) * to.share, [&] {
+    const double m = Rise(to.slope, first, last).along();
+    return std::pair(m, first - m);
+  });
+  take(from.share * to.share, [&] { return std::pair(mean_between(from, to), 0.0); });
+  const double more = depth_.value - mean;
+  add(p, q, {mean + more / 3, mean / 3 + more / 6});
+  const double area = 0.5 * dot(cross(p - center_, q - center_), normal_);
+  moment_.add(area * slope / 12 * (p - q));
 }
 
 // Returns the sample's depth, continued linearly.
@@ -118,19 +128,31 @@ double DepthFan::foretold(Vec3 x) const {
   return std::max(depth_.value + dot(depth_.gradient, x - center_), 0.0);
 }
 
-// Returns the mean depth along a part of an edge.
-double DepthFan::mean_between(const Stop& from, const Stop& to) const {
-  // Returns how deep one end is below the plane at the other.
-  const auto slope = [&](const Stop& end, const Stop& other) {
-    return end.plane != nullptr ? depth_below(*end.plane, other.place) : kSteep;
-  };
-  const double first = foretold(from.place), last = foretold(to.place);
-  if (from.is_corner && to.is_corner) return 0.5 * (first + last);
-  if (to.is_corner) return Rise(slope(from, to), last, first).along();
-  if (from.is_corner) return Rise(slope(to, from), first, last).along();
-  const double up = slope(from, to), down = slope(to, from);
+// Takes segments the more the nearer and longer they are, up to the distance that counts as near.
+DepthFan::End DepthFan::end_at(Vec3 place, Vec3 other) const {
+  const double near = kNear * norm(other - place);
+  End end{place, foretold(place)};
+  WideSum lengths, slopes;
+  for (std::size_t k = 0; k < segments_.size(); ++k) {
+    const Vec3 start = segments_[k].start, along = segments_[k].end - start;
+    const double length2 = squared_norm(along), t = dot(place - start, along);
+    const double part = t > 0 ? std::min(t / length2, 1.0) : 0;
+    const double gap = norm(start + part * along - place);
+    if (!(gap < near)) continue;
+    const double length = std::min(std::sqrt(length2), near) * (1 - gap / near);
+    lengths.add(length);
+    slopes.add(length * depth_below(planes_[k], other));
+  }
+  const double sum = lengths.real();
+  if (sum > 0) end.share = std::min(sum / near, 1.0), end.slope = slopes.real() / sum;
+  return end;
+}
+
+// Returns the mean along a part of an edge between cuts: of the least of what rises, what falls and
+// what is foretold.
+double DepthFan::mean_between(const End& from, const End& to) {
+  const double first = from.foretold, last = to.foretold, up = from.slope, down = to.slope;
   if (!(up > 0) || !(down > 0)) return 0;
-  // The least of what rises, what falls and what is foretold.
   const double t = first / (up + first - last), u = (down - first) / (down - first + last);
   if (!(t >= 0 && t < u && u <= 1)) return 0.5 * up * down / (up + down);
   return 0.5 * (up * t * u + down * (1 - u) * (1 - t));
