@@ -48,9 +48,9 @@ class DepthCells {
   // a cell for which visitor.is_too_large(cell) holds is halved in any case. Of any other one
   // visitor.take_if_small(cell, weight) adds as much as it is small and returns the weight that is
   // left. If that is any, visitor.value(cell) is computed. The visitor adds it by
-  // take(cell, value, weight) if is_negligible(value), or with the share of the weight that
-  // agreement(value, first, second) returns, as far as the values of both halves confirm it, which
-  // leaves the better one in `value`. For the rest of the weight the same is done with each half.
+  // take(cell, value, weight) if is_negligible(value, weight), or with the share of the weight that
+  // agreement(value, first, second, weight) returns, as far as the values of both halves confirm
+  // it, which leaves the better one in `value`. For the rest of the weight the same is done with each half.
   // They share the bits of the points where segments cross from one to the other, and which corners
   // lie inside follows from these points: so parts add up to the whole. `normal` points out of the
   // triangle, of any length.
@@ -92,7 +92,7 @@ class DepthCells {
       weight = visitor.take_if_small(cell, weight);
       if (!(weight > 0)) return;
       if (!value) value = visitor.value(cell);
-      if (visitor.is_negligible(*value)) return visitor.take(cell, *value, weight);
+      if (visitor.is_negligible(*value, weight)) return visitor.take(cell, *value, weight);
     }
     const std::size_t segments = segments_.size(), points = points_.size();
     const std::array<Part, 2> half = halves(part);
@@ -103,7 +103,7 @@ class DepthCells {
         values = {value, value};  // what lies in one half alone is what it was
       } else {
         values = {visitor.value(cells[0]), visitor.value(cells[1])};
-        const double taken = weight * visitor.agreement(*value, *values[0], *values[1]);
+        const double taken = weight * visitor.agreement(*value, *values[0], *values[1], weight);
         if (taken > 0) visitor.take(cell_of(part), *value, taken);
         weight -= taken;
       }

@@ -114,9 +114,9 @@ double SurfacePair::depth_of_largest() {
   return areas > 0 ? sum / areas / 2 : 0;
 }
 
-// Returns how far a mean error over an area may stay.
+// Returns how far an error of the integral over an area may stay.
 double SurfacePair::share_of_precise(double error, double area) const {
-  return share_below(std::max(precision_.depth * area, precision_.product), error * area);
+  return share_below(std::max(precision_.depth * area, precision_.product), error);
 }
 
 // Adds the forces on all that is inside, after all moments are summed.
@@ -165,10 +165,11 @@ double SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Fo
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
   ++sums_.depths;
   depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
-  const double error = per_unit_ * std::abs(foretold.at(middle) - depth.value);
+  const double error = per_unit_ * std::abs(foretold.at(middle) - depth.value),
+               area = per_unit_ * per_unit_ * patch.area;
   const double share =
       std::max(share_of_small(patch.radius, most),
-               foretold.is_known ? share_of_precise(error, per_unit_ * per_unit_ * patch.area) : 0);
+               foretold.is_known ? share_of_precise(foretold.weight * error * area, area) : 0);
   const double weight = share * foretold.weight;
   foretold.depth = depth, foretold.place = middle, foretold.is_known = true;
   if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !(weight > 0))
@@ -207,7 +208,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   const double error = per_unit_ * std::abs(before.at(middle) - depth.value),
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
   const double share = std::max(share_of_small(longest, most),
-                                before.is_known ? share_of_precise(error, area) : 0);
+                                before.is_known ? share_of_precise(before.weight * error * area, area) : 0);
   if (share < 1) add_force_of_cells(which, cell, normal, (1 - share) * before.weight);
   if (!(share > 0)) return;
   const ForceAndTorque f = linear_force(corners, depth, middle);
@@ -297,11 +298,11 @@ class SurfacePair::CellVisitor {
             is_large(cell)};
   }
 
-  bool is_negligible(const Value& value) const {
-    return value.area * std::abs(value.sampled.depth.value) <= pair_.precision_.product;
+  bool is_negligible(const Value& value, double weight) const {
+    return weight * value.area * std::abs(value.sampled.depth.value) <= pair_.precision_.product;
   }
 
-  double agreement(Value& value, const Value& first, const Value& second) const {
+  double agreement(Value& value, const Value& first, const Value& second, double weight) const {
     const DepthIntegral &p = first.integral, &q = second.integral;
     const DepthIntegral sum{p.volume + q.volume, p.moment + q.moment};
     const double more = sum.volume - value.integral.volume;
@@ -311,7 +312,7 @@ class SurfacePair::CellVisitor {
     value.integral = sum;
     const Precision& precision = pair_.precision_;
     const double least = std::min(first.area, second.area) / kLeastHalf;
-    return std::min({share_below(std::max(precision.depth * value.area, precision.product), error),
+    return std::min({pair_.share_of_precise(weight * error, value.area),
                      1 - share_below(value.area, least),
                      value.is_large ? share_below(kShallow * precision.mean, value.sampled.depth.value) : 1});
   }
