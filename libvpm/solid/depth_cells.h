@@ -50,10 +50,10 @@ class DepthCells {
   // left. If that is any, visitor.value(cell) is computed. The visitor adds it by
   // take(cell, value, weight) if is_negligible(value, weight), or with the share of the weight that
   // agreement(value, first, second, weight) returns, as far as the values of both halves confirm
-  // it, which leaves the better one in `value`. For the rest of the weight the same is done with each half.
-  // They share the bits of the points where segments cross from one to the other, and which corners
-  // lie inside follows from these points: so parts add up to the whole. `normal` points out of the
-  // triangle, of any length.
+  // it, which leaves the better one in `value`. For the rest of the weight the same is done with
+  // each half. They share the bits of the points where segments cross from one to the other, and
+  // which corners lie inside follows from these points: so parts add up to the whole. `normal`
+  // points out of the triangle, of any length.
   template <class Visitor>
   void run(const DepthCell& cell, Vec3 normal, double weight, Visitor& visitor) {
     segments_.assign(cell.segments.begin(), cell.segments.end());

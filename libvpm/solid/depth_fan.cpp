@@ -130,16 +130,17 @@ double DepthFan::foretold(Vec3 x) const {
 
 // Takes segments the more the nearer and longer they are, up to the distance that counts as near.
 DepthFan::End DepthFan::end_at(Vec3 place, Vec3 other) const {
-  const double near = kNear * norm(other - place);
+  const double near2 = kNear * kNear * squared_norm(other - place), near = std::sqrt(near2);
   End end{place, foretold(place)};
   WideSum lengths, slopes;
   for (std::size_t k = 0; k < segments_.size(); ++k) {
-    const Vec3 start = segments_[k].start, along = segments_[k].end - start;
-    const double length2 = squared_norm(along), t = dot(place - start, along);
-    const double part = t > 0 ? std::min(t / length2, 1.0) : 0;
-    const double gap = norm(start + part * along - place);
-    if (!(gap < near)) continue;
-    const double length = std::min(std::sqrt(length2), near) * (1 - gap / near);
+    const Vec3 along = segments_[k].end - segments_[k].start, to_place = place - segments_[k].start;
+    const double length2 = squared_norm(along), t = std::max(dot(to_place, along), 0.0);
+    const double gap2 = t < length2 ? squared_norm(to_place) - t * t / length2
+                                    : squared_norm(place - segments_[k].end);
+    if (!(gap2 < near2)) continue;
+    const double gap = std::sqrt(std::max(gap2, 0.0));
+    const double length = std::sqrt(std::min(length2, near2)) * (1 - gap / near);
     lengths.add(length);
     slopes.add(length * depth_below(planes_[k], other));
   }

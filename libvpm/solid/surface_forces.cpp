@@ -35,7 +35,7 @@ constexpr double kForetelling = 4;
 constexpr double kPlausibleCells = 0.1;
 // From what part of a limit on one way of sampling gives way to another: between, both are mixed,
 // so that forces do not jump. Of errors, and of sizes.
-constexpr double kMixedErrors = 0.5, kMixedSizes = 0.9;
+constexpr double kMixedErrors = 0.5, kMixedSizes = 0.95;
 // Pieces that tell how deep thin solids are.
 constexpr std::size_t kProbes = 8;
 
@@ -207,8 +207,9 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   depth.gradient = transpose(role.to_other.rotation) * gradient;
   const double error = per_unit_ * std::abs(before.at(middle) - depth.value),
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
-  const double share = std::max(share_of_small(longest, most),
-                                before.is_known ? share_of_precise(before.weight * error * area, area) : 0);
+  const double share =
+      std::max(share_of_small(longest, most),
+               before.is_known ? share_of_precise(before.weight * error * area, area) : 0);
   if (share < 1) add_force_of_cells(which, cell, normal, (1 - share) * before.weight);
   if (!(share > 0)) return;
   const ForceAndTorque f = linear_force(corners, depth, middle);
@@ -312,9 +313,9 @@ class SurfacePair::CellVisitor {
     value.integral = sum;
     const Precision& precision = pair_.precision_;
     const double least = std::min(first.area, second.area) / kLeastHalf;
-    return std::min({pair_.share_of_precise(weight * error, value.area),
-                     1 - share_below(value.area, least),
-                     value.is_large ? share_below(kShallow * precision.mean, value.sampled.depth.value) : 1});
+    return std::min(
+        {pair_.share_of_precise(weight * error, value.area), 1 - share_below(value.area, least),
+         value.is_large ? share_below(kShallow * precision.mean, value.sampled.depth.value) : 1});
   }
 
   void take(const DepthCell& cell, const Value& value, double weight) {

@@ -87,7 +87,7 @@ class SurfacePair {
     Depth depth;  // at the place
     Vec3 place;
     ForceAndTorque force;
-    Vec3 middle = {};  // of the piece; set for contacts
+    Vec3 middle = {};   // of the piece; set for contacts
     double weight = 1;  // of the force
   };
   // A depth that is linear near a place, which tells what to expect beside it, and the weight of
