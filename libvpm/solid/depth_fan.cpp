@@ -10,6 +10,8 @@ namespace {
 // Segments so near to an end of what is inside of an edge tell the depth there, relative to the
 // length of what is inside.
 constexpr double kNear = 0.25;
+// Depth times length that is none, in the unit that no coordinate exceeds.
+constexpr double kNothing = 1e-15;
 
 // A depth d(t) on the way from the border, t = 0, to a place of known depth, t = 1: it grows from 0
 // by `slope` and bends evenly to be `height` there. If it were more in between, it bends before, to
@@ -128,11 +130,12 @@ double DepthFan::foretold(Vec3 x) const {
   return std::max(depth_.value + dot(depth_.gradient, x - center_), 0.0);
 }
 
-// Takes segments the more the nearer and longer they are, up to the distance that counts as near.
+// Takes segments the more the nearer and longer they are, up to the distance that counts as near,
+// and the less the deeper the place is below their planes, where what is foretold is right.
 DepthFan::End DepthFan::end_at(Vec3 place, Vec3 other) const {
   const double near2 = kNear * kNear * squared_norm(other - place), near = std::sqrt(near2);
   End end{place, foretold(place)};
-  WideSum lengths, slopes;
+  WideSum lengths, slopes, levels;
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     const Vec3 along = segments_[k].end - segments_[k].start, to_place = place - segments_[k].start;
     const double length2 = squared_norm(along), t = std::max(dot(to_place, along), 0.0);
@@ -143,9 +146,13 @@ DepthFan::End DepthFan::end_at(Vec3 place, Vec3 other) const {
     const double length = std::sqrt(std::min(length2, near2)) * (1 - gap / near);
     lengths.add(length);
     slopes.add(length * depth_below(planes_[k], other));
+    levels.add(length * depth_below(planes_[k], place));
   }
   const double sum = lengths.real();
-  if (sum > 0) end.share = std::min(sum / near, 1.0), end.slope = slopes.real() / sum;
+  if (!(sum > 0)) return end;
+  const double level = levels.real() / std::max(sum * end.foretold, kNothing);
+  end.share = std::min(sum / near, 1.0) * std::max(1 - level, 0.0);
+  end.slope = slopes.real() / sum;
   return end;
 }
 
