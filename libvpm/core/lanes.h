@@ -6,6 +6,7 @@
 // optimisation): clones for other CPUs would pass vectors by another calling convention.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>  // defines __GLIBC__ where the loader can choose
 #include <cstring>
@@ -36,6 +37,15 @@ using WideFloats = float __attribute__((vector_size(64)));
 using WideInts = std::int32_t __attribute__((vector_size(64)));
 using WideUnsigned = std::uint32_t __attribute__((vector_size(64)));
 using HalfFloats = float __attribute__((vector_size(16)));
+
+// Starts to read objects that a search is likely to need soon, all their cache lines.
+template <class Object>
+[[gnu::always_inline]] inline void prefetch(const Object* first, std::size_t count = 1) {
+  constexpr std::size_t kCacheLine = 64;  // bytes
+  const char* const bytes = reinterpret_cast<const char*>(first);
+  for (std::size_t at = 0; at < count * sizeof(Object); at += kCacheLine)
+    __builtin_prefetch(bytes + at);
+}
 
 // Returns the numbers at `from`, which need not be aligned, as a vector.
 template <class Vector, class Number>

@@ -25,15 +25,6 @@ constexpr std::size_t kLeafTriangles = 4;
 constexpr double kBoxPadding = 0x1p-21;
 constexpr float kBoundSlack = 1.0f + 0x1p-20f;
 
-// Starts to read objects that a search is likely to need soon, all their cache lines.
-template <class Object>
-[[gnu::always_inline]] inline void prefetch(const Object* first, std::uint32_t count) {
-  constexpr std::size_t kCacheLine = 64;  // bytes
-  const char* const bytes = reinterpret_cast<const char*>(first);
-  for (std::size_t at = 0; at < count * sizeof(Object); at += kCacheLine)
-    __builtin_prefetch(bytes + at);
-}
-
 // Updates `best` with the closest point on up to four triangles, if it is nearer than `best2`.
 [[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
                                                 std::uint32_t count, Vec3 x, SurfacePoint& best,
@@ -185,7 +176,7 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
       if (!(bound2[slot] <= static_cast<float>(best2) * kBoundSlack)) continue;
       const std::uint32_t child = node.child[slot], count = node.count[slot];
       if (count == 0 && child == 0) continue;
-      count > 0 ? prefetch(&corners_[child], count) : prefetch(&nodes_[child], 1);
+      count > 0 ? prefetch(&corners_[child], count) : prefetch(&nodes_[child]);
       std::size_t place = top++;
       for (; place > base && stack[place - 1].bound2 < bound2[slot]; --place)
         stack[place] = stack[place - 1];

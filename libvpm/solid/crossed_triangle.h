@@ -42,15 +42,9 @@ struct CrossedTriangle {
  private:
   [[gnu::always_inline]] void add(double sign, Vec3 p, Vec3 q) {
     const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
-    const Vec3 mean = size / 3 * (corner[0] + p + q), total = corner[0] + p + q;
-    // Computes what mean_products() does, in vectors: the products xx, yy, zz and xy in one of
-    // them, xz and yz in the other.
-    Double4 four{}, two{};
-    for (const Vec3& v : {corner[0], p, q, total}) {
-      four += Double4{v.x, v.y, v.z, v.x} * Double4{v.x, v.y, v.z, v.y};
-      two += Double4{v.x, v.y, 0, 0} * Double4{v.z, v.z, 0, 0};
-    }
-    sums_.add({Double4{size, mean.x, mean.y, mean.z}, size * (four / 12), size * (two / 12)});
+    const Vec3 mean = size / 3 * (corner[0] + p + q);
+    const auto [four, two] = mean_product_lanes(corner[0], p, q);
+    sums_.add({Double4{size, mean.x, mean.y, mean.z}, size * four, size * two});
   }
 
   WideSums<3> sums_;

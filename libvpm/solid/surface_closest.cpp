@@ -82,7 +82,7 @@ SurfacePoint SurfaceTree::closest(Vec3 x, double within) const {
         triangles[count++] = child & ~kLeaf;
         continue;
       }
-      __builtin_prefetch(&nodes_[child]);
+      prefetch(&nodes_[child]);
       std::size_t place = top++;  // the nearest child last, so that it is next
       for (; place > base && stack[place - 1].bound2 < bound2[slot]; --place)
         stack[place] = stack[place - 1];

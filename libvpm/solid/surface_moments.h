@@ -5,6 +5,7 @@
 #include <array>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/core/vec3x4.h"
 
 namespace vpm {
 
@@ -20,15 +21,23 @@ inline Vec3 times(const Products& p, Vec3 v) {
           p[4] * v.x + p[5] * v.y + p[2] * v.z};
 }
 
+// Products in vectors: xx, yy, zz and xy in one of them, xz and yz in the other.
+struct ProductLanes {
+  Double4 four, two;
+};
+
 // Returns the mean of the products over the triangle a, b, c (exact for polynomials of degree 2).
+[[gnu::always_inline]] inline ProductLanes mean_product_lanes(Vec3 a, Vec3 b, Vec3 c) {
+  ProductLanes sum{};
+  for (const Vec3& v : {a, b, c, a + b + c}) {
+    sum.four += Double4{v.x, v.y, v.z, v.x} * Double4{v.x, v.y, v.z, v.y};
+    sum.two += Double4{v.x, v.y, 0, 0} * Double4{v.z, v.z, 0, 0};
+  }
+  return {sum.four / 12, sum.two / 12};
+}
 inline Products mean_products(Vec3 a, Vec3 b, Vec3 c) {
-  const Vec3 t = a + b + c;
-  const auto mean = [](double p, double q, double r, double s, double p2, double q2, double r2,
-                       double s2) { return (p * p2 + q * q2 + r * r2 + s * s2) / 12; };
-  return {
-      mean(a.x, b.x, c.x, t.x, a.x, b.x, c.x, t.x), mean(a.y, b.y, c.y, t.y, a.y, b.y, c.y, t.y),
-      mean(a.z, b.z, c.z, t.z, a.z, b.z, c.z, t.z), mean(a.x, b.x, c.x, t.x, a.y, b.y, c.y, t.y),
-      mean(a.x, b.x, c.x, t.x, a.z, b.z, c.z, t.z), mean(a.y, b.y, c.y, t.y, a.z, b.z, c.z, t.z)};
+  const auto [four, two] = mean_product_lanes(a, b, c);
+  return {four[0], four[1], four[2], four[3], two[0], two[1]};
 }
 
 struct SurfaceMoments {

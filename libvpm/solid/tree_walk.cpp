@@ -210,13 +210,6 @@ struct PairSizes {
   return sizes;
 }
 
-// Prefetches a node of a tree into the cache, since the walk comes to it soon.
-[[gnu::always_inline]] inline void fetch(const SurfaceTree::Node& node) {
-  constexpr std::size_t kLine = 64;
-  for (std::size_t at = 0; at < sizeof node; at += kLine)
-    __builtin_prefetch(reinterpret_cast<const char*>(&node) + at);
-}
-
 }  // namespace
 
 // Puts the pairs of children of two nodes that meet on the stack, in three sets of bits: of a pair
@@ -226,7 +219,7 @@ void TreeWalk::push(const SurfaceTree& a, const SurfaceTree& b, Place place, uns
                     unsigned larger_of_b, unsigned alike) {
   const SurfaceTree::Node &p = a.nodes()[place.a], &q = b.nodes()[place.b];
   const auto add = [&](const Place& next) __attribute__((always_inline)) {
-    fetch(a.nodes()[next.a]), fetch(b.nodes()[next.b]);
+    prefetch(&a.nodes()[next.a]), prefetch(&b.nodes()[next.b]);
     stack_.push_back(next);
   };
   for (; alike != 0; alike &= alike - 1) {
