@@ -186,7 +186,7 @@ class CellMeasure {
   };
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
     const Vec3 x = to_surface_ * piece.at;
-    return sample_of(piece, x, surface_.sample(x, point));
+    return sample_of(piece, x, sample_for_piece(surface_, x, piece.extent, point));
   }
   // Returns the decisions for a piece at x, surface frame, from a known surface sample.
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
@@ -311,7 +311,8 @@ class CellMeasure {
                   CellResult& result, const Near& near) const {
     const ToolPiece piece = piece_of(cell_.samples[k]);
     const Vec3 x = to_surface_ * piece.at;
-    const PieceSample sampled = sample_of(piece, x, near.sample(x, result.point));
+    const PieceSample sampled =
+        sample_of(piece, x, sample_for_piece(near, x, piece.extent, result.point));
     result.point = sampled.on_surface.point;
     if (!note(piece, sampled, PieceIndex::sample(k), far, result)) return;
     const WayOut way = way_out(piece, sampled, true);

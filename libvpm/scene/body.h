@@ -64,6 +64,17 @@ VPM_HD inline bool is_behind_surface(const SurfaceSample& on_surface) {
   return on_surface.known && on_surface.distance < 0;
 }
 
+// Samples a surface for a piece about x that reaches so far, m: nothing that is further before the
+// surface is asked of it.
+template <class Surface>
+VPM_HD SurfaceSample sample_for_piece(const Surface& surface, const Vec3& x, double reach,
+                                      std::uint32_t point) {
+  if constexpr (requires { surface.sample_within(x, reach, point); })
+    return surface.sample_within(x, reach, point);
+  else
+    return surface.sample(x, point);
+}
+
 // Samples a surface at several places in turn, as long as `take` returns true. True if all were
 // taken.
 struct SampleInTurn {

@@ -105,6 +105,17 @@ TEST_F(Rig, OrderOfCamerasAndOneTwiceChangeNoBit) {
   EXPECT_GT(most, 0.8);
 }
 
+// Returns a rig of so many cameras whose images have holes.
+RigBody rig_with_holes(const synthetic::Surface& surface, int count) {
+  std::vector<DepthBody> images;
+  for (const Camera& camera : with_larger_pixels(ring_of_cameras(count), 2, 2)) {
+    DepthImage image = synthetic::render(surface, camera);
+    make_holes(image, images.size() + 1);
+    images.emplace_back(make_cloud(image, camera, {}));
+  }
+  return RigBody(std::move(images));
+}
+
 // Counts balls by what is told of them, and expects it of places in them.
 struct Decided {
   int free = 0, behind = 0;
@@ -146,6 +157,9 @@ TEST(RigOfAnyScene, SideOfABallHoldsUnderNoiseAndForOblongPixels) {
     images.emplace_back(make_cloud(
         synthetic::render_with_kinect_noise(*scene(), camera, images.size()), camera, {}));
   EXPECT_GT(expect_sides_to_hold(RigBody(images)).free, 100);
+}
+TEST(RigOfAnyScene, SideOfABallHoldsBesideHoles) {
+  EXPECT_GT(expect_sides_to_hold(rig_with_holes(*scene(), 2)).free, 100);
 }
 
 // Whoever asks only what is nearer than some distance gets that with the bits of all.
@@ -297,31 +311,62 @@ TEST(RigOfAnyScene, SilhouettesMoveNoFaceThatIsSeen) {
   EXPECT_LT(std::fabs(sum / count), 0.00005);  // m; a pixel is 3.4 mm wide
 }
 
-// Where a camera has not measured what others have before a place, its image around the hole tells
-// if it sees past that; nothing is then solid, or free, that is not so without the hole.
+// Where a camera has not measured anything, its image around the hole tells what goes on there:
+// hardly anything is then solid, or not, that is otherwise without holes.
 TEST(RigOfAnyScene, SmallHolesChangeHardlyAnything) {
-  const std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(2), 2, 2);
-  std::vector<DepthBody> whole, images;
-  for (const Camera& camera : cameras) {
-    DepthImage image = synthetic::render(*scene(), camera);
-    whole.emplace_back(make_cloud(image, camera, {}));
-    make_holes(image, images.size());
+  const Pose turned{testing::generic_rotation(), {}};
+  const synthetic::SurfacePtr scenes[] = {
+      scene(), room_with(synthetic::make_ball({}, 0.12)),
+      room_with(synthetic::make_block({0.26, 0.01, 0.2}, turned)),
+      room_with(synthetic::make_prism({{-0.1, 0.1}, {0, 0}, {0.1, 0.1}, {0.1, -0.1}, {-0.1, -0.1}},
+                                      turned))};
+  for (const synthetic::SurfacePtr& surface : scenes) {
+    for (int count = 2; count <= 4; ++count) {
+      const RigBody rig = rig_with_holes(*surface, count),
+                    all(images_of(*surface, with_larger_pixels(ring_of_cameras(count), 2, 2)));
+      const Pose to_rig = inverse(rig.to_world());
+      int known = 0, free = 0, solid = 0;
+      for (const Vec3& place : places(8000, 0.2)) {
+        const SurfaceSample truth = all.surface().sample(to_rig * place),
+                            seen = rig.surface().sample(to_rig * place);
+        if (!truth.known || std::fabs(truth.distance) < 0.01) continue;
+        ++known;
+        free += truth.distance < 0 && !is_behind_surface(seen);
+        solid += truth.distance > 0 && is_behind_surface(seen);
+      }
+      SCOPED_TRACE(count);
+      EXPECT_GT(known, 3000);
+      EXPECT_LT(free, 0.004 * known);
+      EXPECT_LT(solid, 0.01 * known);
+    }
+  }
+}
+
+// Two cameras before a wall have their holes at one place. What goes on there is solid; nobody has
+// seen free what is before it.
+TEST(RigOfAnyScene, BehindAHoleOfAllCamerasIsWhatGoesOnThere) {
+  const synthetic::SurfacePtr wall = synthetic::make_wall({}, {0, 0, 1});
+  std::vector<DepthBody> images;
+  for (const Vec3& from : {Vec3{0.5, 0, 0.7}, {-0.5, 0.1, 0.7}}) {
+    Camera camera = synthetic::default_camera();
+    camera.to_world = testing::looking_at_origin(from);
+    DepthImage image = synthetic::render(*wall, camera);
+    for (std::uint32_t v = 0; v < image.height; ++v)
+      for (std::uint32_t u = 0; u < image.width; ++u)
+        if (std::hypot(u - camera.intrinsics.cx, v - camera.intrinsics.cy) < 12)
+          image.depth[image.index(u, v)] = 0;
     images.emplace_back(make_cloud(image, camera, {}));
   }
-  const RigBody all(std::move(whole)), rig(std::move(images));
-  const Pose to_rig = inverse(rig.to_world());
-  int known = 0, free = 0, solid = 0;
-  for (const Vec3& place : places(20000, 0.2)) {
-    const SurfaceSample truth = all.surface().sample(to_rig * place),
-                        seen = rig.surface().sample(to_rig * place);
-    if (!truth.known || !seen.known || std::fabs(truth.distance) < 0.01) continue;
-    ++known;
-    free += seen.distance > 0 && truth.distance < 0;
-    solid += seen.distance < 0 && truth.distance > 0;
+  const AnyBody rig(RigBody(std::move(images)));
+  const ToolModel tool = testing::lattice_cube(0.01, 3, 2);
+  ToolQuery query(tool, {});
+  for (const double height : {-0.006, -0.002, 0.0, 0.003, 0.0055}) {
+    const Result found = query.run(rig, {{}, {0, 0, height}});
+    const double inside = std::clamp(0.5 - height / 0.01, 0.0, 1.0);
+    EXPECT_NEAR(found.volume_fraction, inside, 0.02) << height;
+    if (inside == 0) EXPECT_NEAR(found.visibility->unseen, 1, 1e-9);
+    if (inside > 0.1) EXPECT_GT(found.wrench.force.z, 0.99 * norm(found.wrench.force)) << height;
   }
-  EXPECT_GT(known, 10000);
-  EXPECT_LT(free, 0.002 * known);
-  EXPECT_LT(solid, 0.01 * known);
 }
 
 // Two cameras see a dark thing on a table: one measures it, in the other's image it is a hole with

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -11,11 +12,12 @@
 namespace vpm {
 namespace {
 
-constexpr int kWidest = 48;                   // pixels of a hole, each way
+constexpr int kDeepest = 24;                  // pixels from a hole's rim to its inside
+constexpr int kWidest = 2 * kDeepest;         // pixels of a part that is fitted, each way
 constexpr int kRim = 4;                       // pixels about a hole by which it is fitted
 constexpr std::size_t kFew = 12;              // pixels of a surface in a rim: fewer tell nothing
 constexpr std::size_t kFewForCurvature = 40;  // of these, fewer tell of a plane only
-constexpr double kNearerBy = 3;               // by which a fit is nearer than the rim shows
+constexpr double kNearerBy = 2;               // deviations by which it may be nearer than its fit
 constexpr double kAside = 1;  // pixels beyond a border that still are of what is near
 
 struct Pixel {
@@ -29,7 +31,13 @@ struct Hole {
   bool is_closed = true;  // measured pixels are all around it
   double middle_u() const { return 0.5 * (least.u + most.u); }
   double middle_v() const { return 0.5 * (least.v + most.v); }
-  bool is_small() const { return most.u - least.u < kWidest && most.v - least.v < kWidest; }
+  int wide() const { return most.u - least.u + 1; }
+  int high() const { return most.v - least.v + 1; }
+  void add(Pixel at) {
+    least = {std::min(least.u, at.u), std::min(least.v, at.v)};
+    most = {std::max(most.u, at.u), std::max(most.v, at.v)};
+    pixels.push_back(at);
+  }
 };
 
 constexpr Pixel kBeside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -43,14 +51,15 @@ class HoleSearch {
 
   // True for the first pixel of a hole that was not taken.
   bool is_new(int u, int v) const { return is_hole_pixel({u, v}) && marks_[index({u, v})] == 0; }
-  // Takes the hole of a pixel, with its rim.
-  Hole take(Pixel first) {
+  // Takes the hole of a pixel. Calls fit(part) for its parts, with their rims, unless something of
+  // it is far from all that was measured.
+  template <class Fit>
+  void take(Pixel first, const Fit& fit) {
     ++number_;
     Hole hole{{first}, {}, first, first};
     marks_[index(first)] = number_;
     for (std::size_t k = 0; k < hole.pixels.size(); ++k) add_beside(hole.pixels[k], hole);
-    if (hole.is_small() && hole.is_closed) add_rim(hole);
-    return hole;
+    if (hole.is_closed && is_shallow(hole)) fit_parts(std::move(hole), fit);
   }
 
  private:
@@ -70,18 +79,58 @@ class HoleSearch {
         hole.is_closed = false;
       } else if (is_new(at.u, at.v)) {
         marks_[index(at)] = number_;
-        hole.least = {std::min(hole.least.u, at.u), std::min(hole.least.v, at.v)};
-        hole.most = {std::max(hole.most.u, at.u), std::max(hole.most.v, at.v)};
-        hole.pixels.push_back(at);
+        hole.add(at);
       }
     }
   }
+  // True for a pixel of a closed hole beside one that has measured something.
+  bool is_at_rim(Pixel own) const {
+    return std::ranges::any_of(kBeside, [&](const Pixel& step) {
+      return is_known({own.u + step.u, own.v + step.v});
+    });
+  }
+  // True if each pixel of a closed hole is within kDeepest steps of one that has measured
+  // something.
+  bool is_shallow(const Hole& hole) {
+    ++number_;
+    std::vector<Pixel> reached;
+    const auto reach = [&](Pixel at) {
+      marks_[index(at)] = number_;
+      reached.push_back(at);
+    };
+    for (const Pixel& own : hole.pixels)
+      if (is_at_rim(own)) reach(own);
+    std::size_t next = 0;
+    for (int step = 1; step < kDeepest; ++step) {
+      for (const std::size_t last = reached.size(); next < last; ++next) {
+        for (const Pixel& beside : kBeside) {
+          const Pixel at{reached[next].u + beside.u, reached[next].v + beside.v};
+          if (!is_known(at) && marks_[index(at)] != number_) reach(at);
+        }
+      }
+    }
+    return reached.size() == hole.pixels.size();
+  }
+  // Calls fit() of a hole, or of its halves, halved as often as they are too wide.
+  template <class Fit>
+  void fit_parts(Hole hole, const Fit& fit) {
+    if (hole.wide() <= kWidest && hole.high() <= kWidest) {
+      add_rim(hole);
+      return fit(hole);
+    }
+    const bool is_wide = hole.wide() > hole.high();
+    const auto is_first = [&](const Pixel& at) {
+      return is_wide ? at.u < hole.middle_u() : at.v < hole.middle_v();
+    };
+    Hole halves[] = {{{}, {}, hole.most, hole.least}, {{}, {}, hole.most, hole.least}};
+    for (const Pixel& at : hole.pixels) halves[is_first(at) ? 0 : 1].add(at);
+    for (Hole& half : halves) fit_parts(std::move(half), fit);
+  }
   void add_rim(Hole& hole) {
+    ++number_;
     for (const Pixel& own : hole.pixels) {
-      const bool is_at_rim = std::ranges::any_of(kBeside, [&](const Pixel& step) {
-        return is_known({own.u + step.u, own.v + step.v});
-      });
-      for (int v = own.v - kRim; is_at_rim && v <= own.v + kRim; ++v) {
+      const bool has_rim = is_at_rim(own);
+      for (int v = own.v - kRim; has_rim && v <= own.v + kRim; ++v) {
         for (int u = own.u - kRim; u <= own.u + kRim; ++u) {
           if (!is_inside({u, v}) || !is_known({u, v}) || marks_[index({u, v})] == number_) continue;
           marks_[index({u, v})] = number_;
@@ -115,8 +164,8 @@ std::optional<Numbers> solution(std::array<Numbers, 6> a, Numbers b, std::size_t
   return x;
 }
 
-// Fits the surface of some pixels of a rim; nothing where it is not smooth. The fit is nearer than
-// these by some deviations, since the surface in the hole may differ from it by more.
+// Fits the surface of some pixels of a rim; nothing where it is not smooth. In the hole the surface
+// may be nearer by some of their deviations from the fit.
 class SurfaceFit {
  public:
   SurfaceFit(const DepthSampler& image, const Hole& hole)
@@ -147,7 +196,8 @@ class SurfaceFit {
     const auto number = [&](std::size_t k) { return static_cast<float>((*found)[k]); };
     return HoleFit{static_cast<float>(u_),
                    static_cast<float>(v_),
-                   static_cast<float>((*found)[0] + nearer),
+                   static_cast<float>(nearer),
+                   number(0),
                    number(1),
                    number(2),
                    number(3),
@@ -172,18 +222,28 @@ struct Border {
   double aside(double at_u, double at_v) const { return (at_u - u) * out_u + (at_v - v) * out_v; }
 };
 
-// The surfaces in the rim of a hole: pixels that steps of less than kJump connect.
+// A smooth surface in the rim of a hole.
+struct RimSurface {
+  std::vector<Pixel> pixels;
+  HoleFit fit;
+};
+
+// The surfaces in the rim of a hole: pixels that steps of less than kJump connect, or those of them
+// that face one of two ways where together they are not smooth.
 class RimSurfaces {
  public:
-  RimSurfaces(const DepthSampler& image, const Hole& hole) : hole_(hole) {
+  RimSurfaces(const DepthSampler& image, const Hole& hole)
+      : image_(image), hole_(hole), fit_(image, hole) {
     labels_.assign(std::size_t{kSide} * kSide, kBeyond);
     for (const Pixel& pixel : hole.pixels) label(pixel) = kHole;
     for (const Pixel& pixel : hole.rim) label(pixel) = kUnlabelled;
     for (const Pixel& pixel : hole.rim)
-      if (label(pixel) == kUnlabelled) spread(image, pixel);
+      if (label(pixel) == kUnlabelled) add(connected_to(pixel), kSplits);
   }
 
-  const std::vector<std::vector<Pixel>>& pixels() const { return surfaces_; }
+  // False where one of them is not smooth: nobody knows what goes on in the hole.
+  bool are_told() const { return is_told_ && !surfaces_.empty(); }
+  const std::vector<RimSurface>& all() const { return surfaces_; }
 
   // Returns the line through the two places, furthest apart, at which surfaces `near` and `far`
   // meet at the hole.
@@ -208,6 +268,7 @@ class RimSurfaces {
   }
 
  private:
+  static constexpr int kSplits = 2;                     // of pixels that are not smooth together
   static constexpr int kSide = kWidest + 2 * kRim + 2;  // one more pixel all around
   static constexpr int kBeyond = -1, kHole = -2, kUnlabelled = -3;
   static constexpr double kShortest = 3;  // pixels
@@ -220,22 +281,47 @@ class RimSurfaces {
   }
   int& label(Pixel at) { return labels_[place(at)]; }
   int label_of(Pixel at) const { return labels_[place(at)]; }
+  Vec3 normal(Pixel at) const { return widen(image_.normals[at.v * image_.width + at.u]); }
 
-  void spread(const DepthSampler& image, Pixel first) {
-    const int number = static_cast<int>(surfaces_.size());
-    std::vector<Pixel>& pixels = surfaces_.emplace_back(1, first);
-    label(first) = number;
+  std::vector<Pixel> connected_to(Pixel first) {
+    std::vector<Pixel> pixels{first};
+    label(first) = kBeyond;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const double own = image.inverse_depth(pixels[i].u, pixels[i].v);
+      const double own = image_.inverse_depth(pixels[i].u, pixels[i].v);
       for (int k = 0; k < kAround; ++k) {
         const Pixel at = around(pixels[i], k);
         if (label(at) != kUnlabelled) continue;
-        const double other = image.inverse_depth(at.u, at.v);
+        const double other = image_.inverse_depth(at.u, at.v);
         if (std::fabs(other - own) > DepthSampler::kJump * std::max(own, other)) continue;
-        label(at) = number;
+        label(at) = kBeyond;
         pixels.push_back(at);
       }
     }
+    return pixels;
+  }
+  // Adds the surface of pixels, or those of two parts of them. Too few pixels are of none.
+  void add(std::vector<Pixel> pixels, int splits) {
+    if (pixels.size() < kFew) return;
+    if (const auto fit = fit_.of(pixels)) {
+      for (const Pixel& pixel : pixels) label(pixel) = static_cast<int>(surfaces_.size());
+      surfaces_.push_back({std::move(pixels), *fit});
+    } else if (splits > 0) {
+      for (std::vector<Pixel>& half : halves(pixels)) add(std::move(half), splits - 1);
+    } else {
+      is_told_ = false;
+    }
+  }
+  // Divides pixels by which of two normals, that differ much, theirs is more like.
+  std::array<std::vector<Pixel>, 2> halves(const std::vector<Pixel>& pixels) const {
+    const auto least_like = [&](const Vec3& other) {
+      return normal(*std::ranges::min_element(
+          pixels, {}, [&](const Pixel& pixel) { return dot(normal(pixel), other); }));
+    };
+    const Vec3 one = least_like(normal(pixels.front())), other = least_like(one);
+    std::array<std::vector<Pixel>, 2> parts;
+    for (const Pixel& pixel : pixels)
+      parts[dot(normal(pixel), one - other) < 0 ? 1 : 0].push_back(pixel);
+    return parts;
   }
   bool has_around(Pixel at, int label) const {
     for (int k = 0; k < kAround; ++k)
@@ -244,7 +330,7 @@ class RimSurfaces {
   }
   std::vector<std::pair<double, double>> meetings_of(std::size_t near, int far) const {
     std::vector<std::pair<double, double>> meetings;
-    for (const Pixel& pixel : surfaces_[near]) {
+    for (const Pixel& pixel : surfaces_[near].pixels) {
       if (!has_around(pixel, kHole)) continue;
       for (int k = 0; k < kAround; ++k) {
         const Pixel at = around(pixel, k);
@@ -256,65 +342,124 @@ class RimSurfaces {
   }
   double mean_aside(const Border& border, std::size_t surface) const {
     double sum = 0;
-    for (const Pixel& pixel : surfaces_[surface]) sum += border.aside(pixel.u, pixel.v);
-    return sum / static_cast<double>(surfaces_[surface].size());
+    for (const Pixel& pixel : surfaces_[surface].pixels) sum += border.aside(pixel.u, pixel.v);
+    return sum / static_cast<double>(surfaces_[surface].pixels.size());
   }
 
+  const DepthSampler& image_;
   const Hole& hole_;
+  SurfaceFit fit_;
+  bool is_told_ = true;
   std::vector<int> labels_;
-  std::vector<std::vector<Pixel>> surfaces_;
+  std::vector<RimSurface> surfaces_;
 };
 
-double mean_inverse_depth(const DepthSampler& image, const std::vector<Pixel>& pixels) {
-  double sum = 0;
-  for (const Pixel& pixel : pixels) sum += image.inverse_depth(pixel.u, pixel.v);
-  return sum / static_cast<double>(pixels.size());
-}
+// Tells which surface of its rim goes on at a pixel of a hole: that of the nearest pixel. Where
+// there are two with a border between them, that tells.
+class SurfaceOfPixel {
+ public:
+  explicit SurfaceOfPixel(const RimSurfaces& rim) : rim_(rim) {
+    if (rim.all().size() != 2) return;
+    is_first_near_ = rim.all()[0].fit.a > rim.all()[1].fit.a;
+    border_ = rim.border(is_first_near_ ? 0 : 1, is_first_near_ ? 1 : 0);
+  }
 
-// Finds the surfaces that go on in a hole, one or two, and calls tell(pixel, fit) for each of its
-// pixels: first for all pixels of one fit, then for those of the other.
+  struct Answer {
+    std::size_t surface = 0;
+    bool is_sure = true;  // false: it may as well be another one
+  };
+  Answer operator()(Pixel at) const {
+    if (rim_.all().size() == 1) return {};
+    if (border_) {
+      const bool is_far = border_->aside(at.u, at.v) > kAside;
+      return {is_far == is_first_near_ ? 1U : 0U};
+    }
+    Answer answer;
+    int least = INT_MAX, next = INT_MAX;
+    for (std::size_t k = 0; k < rim_.all().size(); ++k) {
+      const int own = squared_distance(rim_.all()[k], at);
+      next = std::min(next, std::max(least, own));
+      if (own < least) least = own, answer.surface = k;
+    }
+    answer.is_sure = next > kMuchFurther * kMuchFurther * least;
+    return answer;
+  }
+
+ private:
+  static constexpr int kMuchFurther = 2;  // times
+
+  static int squared_distance(const RimSurface& surface, Pixel at) {
+    int least = INT_MAX;
+    for (const Pixel& pixel : surface.pixels) {
+      const int u = pixel.u - at.u, v = pixel.v - at.v;
+      least = std::min(least, u * u + v * v);
+    }
+    return least;
+  }
+
+  const RimSurfaces& rim_;
+  bool is_first_near_ = true;
+  std::optional<Border> border_;
+};
+
+// Calls tell(fit, pixels) for each surface that goes on in a hole. Where it may as well be another
+// one, a fit may be nearer by as much as that is.
 template <class Tell>
 void fit_hole(const DepthSampler& image, const Hole& hole, const Tell& tell) {
-  if (!hole.is_small() || !hole.is_closed) return;
   const RimSurfaces rim(image, hole);
-  const SurfaceFit fit(image, hole);
-  if (rim.pixels().size() == 1) {
-    const auto whole = fit.of(rim.pixels().front());
-    for (const Pixel& pixel : hole.pixels)
-      if (whole) tell(pixel, *whole);
+  if (!rim.are_told()) return;
+  const SurfaceOfPixel surface_of(rim);
+  std::vector<std::vector<Pixel>> sure(rim.all().size()), unsure(rim.all().size());
+  for (const Pixel& pixel : hole.pixels) {
+    const auto [surface, is_sure] = surface_of(pixel);
+    (is_sure ? sure : unsure)[surface].push_back(pixel);
   }
-  if (rim.pixels().size() != 2) return;
-  const bool is_first_near =
-      mean_inverse_depth(image, rim.pixels()[0]) > mean_inverse_depth(image, rim.pixels()[1]);
-  const std::size_t near = is_first_near ? 0 : 1, far = 1 - near;
-  const auto border = rim.border(near, far);
-  const auto near_fit = fit.of(rim.pixels()[near]), far_fit = fit.of(rim.pixels()[far]);
-  if (!border || !near_fit || !far_fit) return;
-  for (const bool is_far : {false, true}) {
-    for (const Pixel& pixel : hole.pixels)
-      if ((border->aside(pixel.u, pixel.v) > kAside) == is_far)
-        tell(pixel, is_far ? *far_fit : *near_fit);
+  float nearest = 0;
+  for (const RimSurface& surface : rim.all())
+    nearest = std::max(nearest, surface.fit.a + surface.fit.nearer);
+  for (std::size_t k = 0; k < rim.all().size(); ++k) {
+    HoleFit fit = rim.all()[k].fit;
+    if (!sure[k].empty()) tell(fit, sure[k]);
+    fit.nearer = nearest - fit.a;
+    if (!unsure[k].empty()) tell(fit, unsure[k]);
   }
+}
+
+// Bounds the inverse depth of a fit in a pixel from above.
+float greatest_at(const HoleFit& fit, Pixel at) {
+  constexpr double kHalf = 0.5, kRounding = 1 + 1e-6;
+  const double x = at.u - double{fit.u}, y = at.v - double{fit.v};
+  const double per_u = fit.b + 2 * fit.d * x + fit.e * y, per_v = fit.c + fit.e * x + 2 * fit.f * y;
+  const double middle = fit.a + (fit.b + fit.d * x + fit.e * y) * x + (fit.c + fit.f * y) * y;
+  const double more = kHalf * (std::fabs(per_u) + std::fabs(per_v)) +
+                      kHalf * kHalf * (std::fabs(fit.d) + std::fabs(fit.e) + std::fabs(fit.f));
+  return static_cast<float>(kRounding * (middle + more));
 }
 
 }  // namespace
 
 ImageHoles::ImageHoles(const DepthSampler& image) {
+  const auto columns = static_cast<std::size_t>(HoleFits::tiles(image.width));
   HoleSearch search(image);
+  const auto tell = [&](const HoleFit& fit, const std::vector<Pixel>& pixels) {
+    fits_.push_back(fit);
+    numbers_.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    greatest_.resize(columns * static_cast<std::size_t>(HoleFits::tiles(image.height)));
+    for (const Pixel& at : pixels) {
+      numbers_[static_cast<std::size_t>(at.v * image.width + at.u)] =
+          static_cast<std::uint32_t>(fits_.size());
+      float& greatest = greatest_[static_cast<std::size_t>(at.v >> HoleFits::kTileShift) * columns +
+                                  static_cast<std::size_t>(at.u >> HoleFits::kTileShift)];
+      greatest = std::max(greatest, greatest_at(fit, at));
+    }
+  };
   for (int v = 0; v < image.height; ++v) {
     for (int u = 0; u < image.width; ++u) {
-      if (!search.is_new(u, v)) continue;
-      const HoleFit* last = nullptr;
-      fit_hole(image, search.take({u, v}), [&](Pixel at, const HoleFit& fit) {
-        if (last != &fit) fits_.push_back(fit);
-        last = &fit;
-        numbers_.resize(static_cast<std::size_t>(image.width) *
-                        static_cast<std::size_t>(image.height));
-        numbers_[static_cast<std::size_t>(at.v * image.width + at.u)] =
-            static_cast<std::uint32_t>(fits_.size());
-      });
+      if (search.is_new(u, v))
+        search.take({u, v}, [&](const Hole& part) { fit_hole(image, part, tell); });
     }
   }
+  columns_ = static_cast<std::int32_t>(columns);
 }
 
 }  // namespace vpm

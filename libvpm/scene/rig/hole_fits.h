@@ -14,6 +14,7 @@ namespace vpm {
 // (u, v) and y below.
 struct HoleFit {
   float u = 0, v = 0;
+  float nearer = 0;  // by which the surface may be nearer
   float a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
 };
 
@@ -23,23 +24,47 @@ struct HoleFits {
   // For each pixel one more than the index of the fit that goes on there; 0 where a surface was
   // measured, or none can be told. Null where there are no fits.
   const std::uint32_t* numbers = nullptr;
+  // Bounds the inverse depth of fits in tiles of 8 by 8 pixels from above, 1/m; 0 where there are
+  // none.
+  const float* greatest = nullptr;
+  std::int32_t columns = 0;  // of these tiles
+
+  static constexpr int kTileShift = 3;
+  static constexpr std::int32_t tiles(std::int32_t pixels) {
+    return ((pixels - 1) >> kTileShift) + 1;
+  }
+
+  // True if a place no deeper than `depth`, m, may be behind a fit in a rectangle of pixels.
+  VPM_HD bool may_be_behind(const PixelRectangle& p, double depth) const {
+    for (std::int32_t v = p.v0 >> kTileShift; v <= p.v1 >> kTileShift; ++v) {
+      for (std::int32_t u = p.u0 >> kTileShift; u <= p.u1 >> kTileShift; ++u)
+        if (depth * greatest[v * columns + u] >= 1) return true;
+    }
+    return false;
+  }
 };
 
 class ImageHoles {
  public:
   ImageHoles() = default;
-  // Fits holes of an image whose rim is one smooth surface, or two, one before the other; then the
-  // border between them goes straight across. Leaves out holes at the border of the image or beside
-  // what was removed, and those wider or higher than 48 pixels.
+  // Fits the smooth surfaces in the rims of holes, or in the rims of their halves where they are
+  // wide. The border between two that meet at two places goes straight across; else each goes on
+  // where it is nearest. Leaves out holes at the border of the image or beside what was removed,
+  // and those of which a pixel is more than 24 away from all that was measured.
   explicit ImageHoles(const DepthSampler& image);
 
-  HoleFits view() const { return {fits_.data(), fits_.empty() ? nullptr : numbers_.data()}; }
+  HoleFits view() const {
+    return {fits_.data(), fits_.empty() ? nullptr : numbers_.data(), greatest_.data(), columns_};
+  }
   const std::vector<HoleFit>& fits() const { return fits_; }
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+  const std::vector<float>& greatest() const { return greatest_; }
 
  private:
   std::vector<HoleFit> fits_;
   std::vector<std::uint32_t> numbers_;  // empty if there are no fits
+  std::vector<float> greatest_;         // too
+  std::int32_t columns_ = 0;
 };
 
 }  // namespace vpm

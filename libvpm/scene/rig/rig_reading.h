@@ -20,16 +20,17 @@ struct RigCamera {
 template <class Real>
 struct RigReading {
   MaskOf<Real> known;          // nothing else means anything where it is false
-  MaskOf<Real> is_measured;    // false: the distance is that to the fit of a hole, and positive
+  MaskOf<Real> is_measured;    // false: the distance is that to the fit of a hole
   MaskOf<Real> is_silhouette;  // the distance is that to a silhouette, or to a fit
   Real distance;               // m, signed as in SurfaceSampleOf; 0 where not known
-  Real depth;                  // m, of the place
-  Real foot_depth;             // m, of what is on its ray
-  Real below;                  // m, by which the place is deeper than that; 0 if aside
-  Real weight;                 // set by weigh(); 0 where not known
-  PlaceOf<Real> normal;        // unit, into free space: the camera's frame, the rig's after weigh()
-  IntOf<Real> pixel;           // index of the nearest one
-  std::int32_t camera;         // index in the rig
+  Real nearer;      // m, by which a fit's surface may be nearer than it; set where there are fits
+  Real depth;       // m, of the place
+  Real foot_depth;  // m, of what is on its ray
+  Real below;       // m, by which the place is deeper than that; 0 if aside
+  Real weight;      // set by weigh(); 0 where not known
+  PlaceOf<Real> normal;  // unit, into free space: the camera's frame, the rig's after weigh()
+  IntOf<Real> pixel;     // index of the nearest one
+  std::int32_t camera;   // index in the rig
 };
 
 // Reads an image, and its silhouettes. All members are functions of one camera and a place x, in
@@ -54,8 +55,10 @@ struct RigReader {
     reading.below = seen.known ? at.z - seen.foot.z : zero;
     reading.normal = choose(seen.known, seen.normal, Place{zero, zero, zero});
     reading.pixel = static_cast<IntOf<Real>>(seen.point);
-    if (camera.silhouettes.holes.numbers != nullptr && !all(seen.known))
-      read_hole(camera, at, reading);
+    if (camera.silhouettes.holes.numbers != nullptr) {
+      reading.nearer = zero;
+      if (!all(seen.known)) read_hole(camera, at, reading);
+    }
     if (any(seen.known)) read_silhouette(camera, at, reading);
   }
 
@@ -98,61 +101,43 @@ struct RigReader {
     MaskOf<Real> may_matter;  // the silhouette may be nearer than the surface that was read
   };
 
-  // Returns how far a place is before the surface that goes on in a hole, m; 0 where it is behind
-  // that, or the camera's image has no such hole there. `normal` receives the unit normal of that
-  // surface, the camera's frame, and `inverse_depth` its inverse depth, 1/m.
-  template <class Place>
-  [[gnu::always_inline]] static VPM_HD RealOf<Place> before_hole(const RigCamera& camera,
-                                                                 const Place& at, Place& normal,
-                                                                 RealOf<Place>& inverse_depth) {
-    using Real = RealOf<Place>;
-    const Real zero{};
-    const Intrinsics& k = camera.image.k;
-    const auto [is_in_image, u, v] = camera.image.project(at);
-    const IntOf<Real> number = gather(camera.silhouettes.holes.numbers,
-                                      truncated(v + 0.5) * camera.image.width + truncated(u + 0.5));
-    const MaskOf<Real> is_hole = is_in_image & widen_mask(number > 0);
-    if (!any(is_hole)) return zero;
-    const HoleFit* const fits = camera.silhouettes.holes.fits;
-    const auto get = [&](float HoleFit::*member) {
-      const IntOf<Real> none{};
-      return gather(number > 0 ? number - 1 : none,
-                    [&](std::int32_t i) { return fits[i].*member; });
-    };
-    const Real x = u - get(&HoleFit::u), y = v - get(&HoleFit::v);
-    const Real d = get(&HoleFit::d), e = get(&HoleFit::e), f = get(&HoleFit::f);
-    const Real per_u = get(&HoleFit::b) + 2 * d * x + e * y,
-               per_v = get(&HoleFit::c) + e * x + 2 * f * y;
-    inverse_depth =
-        get(&HoleFit::a) + (get(&HoleFit::b) + d * x + e * y) * x + (get(&HoleFit::c) + f * y) * y;
-    // The plane through that point: inverse depth times depth is 1 on it.
-    const Place along{k.fx * per_u, k.fy * per_v,
-                      inverse_depth - per_u * (u - k.cx) - per_v * (v - k.cy)};
-    const Real length = square_root(squared_norm(along));
-    normal =
-        Place{quotient(-along.x, length), quotient(-along.y, length), quotient(-along.z, length)};
-    const Real before = quotient(1 - inverse_depth * at.z, length);
-    return is_hole & (inverse_depth > 0) & (before > 0) ? before : zero;
-  }
-
-  // Takes the surface that goes on in a hole for what is measured there, of places before it.
+  // Takes the surface that goes on in a hole for what is measured there.
   template <class Place>
   [[gnu::always_inline]] static VPM_HD void read_hole(const RigCamera& camera, const Place& at,
                                                       RigReading<RealOf<Place>>& reading) {
     using Real = RealOf<Place>;
-    Place normal = reading.normal;
-    Real inverse_depth = Real{} + 1;
-    const Real before = before_hole(camera, at, normal, inverse_depth);
-    const MaskOf<Real> is_before = negated(reading.is_measured) & (before > 0);
-    if (!any(is_before)) return;
-    const Real foot_depth = quotient(1, inverse_depth);
     const IntOf<Real> none{};
-    reading.known |= is_before;
-    reading.is_silhouette |= is_before;
-    reading.distance = is_before ? before : reading.distance;
-    reading.foot_depth = is_before ? foot_depth : reading.foot_depth;
-    reading.below = is_before ? at.z - foot_depth : reading.below;
-    reading.normal = choose(is_before, normal, reading.normal);
+    const HoleFits& holes = camera.silhouettes.holes;
+    const auto [is_in_image, u, v] = camera.image.project(at);
+    const IntOf<Real> number =
+        gather(holes.numbers, truncated(v + 0.5) * camera.image.width + truncated(u + 0.5));
+    const MaskOf<Real> is_hole =
+        is_in_image & negated(reading.is_measured) & widen_mask(number > 0);
+    if (!any(is_hole)) return;
+    const auto get = [&](float HoleFit::*member) {
+      return gather(number > 0 ? number - 1 : none,
+                    [&](std::int32_t i) { return holes.fits[i].*member; });
+    };
+    const Intrinsics& k = camera.image.k;
+    const Real x = u - get(&HoleFit::u), y = v - get(&HoleFit::v);
+    const Real d = get(&HoleFit::d), e = get(&HoleFit::e), f = get(&HoleFit::f);
+    const Real per_u = get(&HoleFit::b) + 2 * d * x + e * y,
+               per_v = get(&HoleFit::c) + e * x + 2 * f * y;
+    const Real inverse_depth =
+        get(&HoleFit::a) + (get(&HoleFit::b) + d * x + e * y) * x + (get(&HoleFit::c) + f * y) * y;
+    const MaskOf<Real> is_fit = is_hole & (inverse_depth > 0);
+    // The plane through that point: inverse depth times depth is 1 on it.
+    const Place along{k.fx * per_u, k.fy * per_v,
+                      inverse_depth - per_u * (u - k.cx) - per_v * (v - k.cy)};
+    const Real per_length = quotient(1, square_root(squared_norm(along)));
+    const Real foot_depth = quotient(1, inverse_depth);
+    reading.known |= is_fit;
+    reading.is_silhouette |= is_fit;
+    reading.distance = is_fit ? (1 - inverse_depth * at.z) * per_length : reading.distance;
+    reading.nearer = is_fit ? get(&HoleFit::nearer) * at.z * per_length : reading.nearer;
+    reading.foot_depth = is_fit ? foot_depth : reading.foot_depth;
+    reading.below = is_fit ? at.z - foot_depth : reading.below;
+    reading.normal = choose(is_fit, -per_length * along, reading.normal);
     if (!any(reading.is_measured)) reading.pixel = none;
   }
 

@@ -59,18 +59,23 @@ struct RigSampler {
     using Real = RealOf<Place>;
     RigReading<Real> readings[kMostCameras];
     SurfaceSampleOf<Real> on_surface;
-    const std::int32_t found = read_all(x, some, readings, on_surface.known, is_decided);
+    Knowledge<Real> knowledge;
+    const std::int32_t found = read_all(x, some, readings, knowledge);
+    is_decided = knowledge.is_decided;
     if (found == 0) return on_surface;
+    on_surface.known = knowledge.is_measured | knowledge.is_fitted;
     Nearest<Real> nearest = nearest_of(readings, found);
     const MaskOf<Real> is_behind = is_clearly_behind(nearest, enough, deepest);
     if (all(negated(on_surface.known) | is_clearly_before(nearest, enough) | is_behind)) {
       on_surface.distance = is_behind ? nearest.greatest : nearest.length;
-      return on_surface;
+    } else {
+      weigh(x, nearest, readings, found);
+      bound_free_distances(x, nearest, readings, found);
+      take_greatest(readings, found, nearest.apart, on_surface);
+      on_surface.foot = x - on_surface.distance * on_surface.normal;
     }
-    weigh(x, nearest, readings, found);
-    bound_free_distances(x, nearest, readings, found);
-    take_greatest(readings, found, nearest.apart, on_surface);
-    on_surface.foot = x - on_surface.distance * on_surface.normal;
+    // What lies before a fit where nobody has measured anything was not seen free.
+    on_surface.known &= knowledge.is_measured | (on_surface.distance < enough);
     return on_surface;
   }
 
@@ -140,15 +145,21 @@ struct RigSampler {
   static constexpr double kUnlike = 0.5;                // cosines of normals of two surfaces,
   static constexpr double kAlike = 0.8660254037844387;  // and of one
 
-  // Reads these cameras. Returns the number of those that know of a place; `known` receives where
-  // one does. Where one has nothing well before the place, those that have are left out.
+  // Tells which of several places cameras have measured something about.
+  template <class Real>
+  struct Knowledge {
+    MaskOf<Real> is_measured{};  // a camera has measured something on the ray of the place
+    MaskOf<Real> is_decided{};   // and that is not well before the place
+    MaskOf<Real> is_fitted{};    // where none is: the fit of a hole tells
+  };
+
+  // Reads these cameras. Returns the number of those that know of a place. Where one has nothing
+  // well before the place, those that have are left out.
   template <class Place>
   [[gnu::always_inline]] VPM_HD std::int32_t read_all(const Place& x, CameraSet some,
                                                       RigReading<RealOf<Place>>* readings,
-                                                      MaskOf<RealOf<Place>>& known,
-                                                      MaskOf<RealOf<Place>>& is_decided) const {
+                                                      Knowledge<RealOf<Place>>& knowledge) const {
     std::int32_t found = 0;
-    known = is_decided = MaskOf<RealOf<Place>>{};
     MaskOf<RealOf<Place>> has_fits{};
     for (std::int32_t i = 0; i < count; ++i) {
       if ((some >> i & 1) == 0) continue;
@@ -156,42 +167,72 @@ struct RigSampler {
       RigReader::read(cameras[i], x, reading);
       if (!any(reading.known)) continue;
       reading.camera = i;
-      known |= reading.is_measured;
+      knowledge.is_measured |= reading.is_measured;
       has_fits |= reading.known & negated(reading.is_measured);
-      is_decided |= reading.is_measured & negated(is_well_before(reading));
+      knowledge.is_decided |= reading.is_measured & negated(is_well_before(reading));
       ++found;
     }
-    for (std::int32_t k = 0; k < found; ++k)
-      readings[k].known &= negated(is_decided & is_well_before(readings[k]));
-    if (any(has_fits)) leave_out_fits(x, known, readings, found);
+    leave_out_hidden(knowledge.is_decided, readings, found);
+    if (any(has_fits)) settle_fits(x, some == all_cameras(), readings, found, knowledge);
     return found;
   }
-  // Leaves out fits of holes where no camera has measured anything, and where one shows a surface
-  // that the fit's camera would see past: it has not measured something there.
+  template <class Real>
+  [[gnu::always_inline]] VPM_HD void leave_out_hidden(const MaskOf<Real>& is_decided,
+                                                      RigReading<Real>* readings,
+                                                      std::int32_t found) const {
+    for (std::int32_t k = 0; k < found; ++k)
+      readings[k].known &= negated(is_decided & is_well_before(readings[k]));
+  }
+  // Takes fits of holes for measured where no camera has decided, if all were asked. Elsewhere a
+  // fit tells of places before it only, where a camera has measured something.
   template <class Place>
-  [[gnu::always_inline]] VPM_HD void leave_out_fits(const Place& x,
-                                                    const MaskOf<RealOf<Place>>& known,
-                                                    RigReading<RealOf<Place>>* readings,
-                                                    std::int32_t found) const {
+  [[gnu::always_inline]] VPM_HD void settle_fits(const Place& x, bool are_all,
+                                                 RigReading<RealOf<Place>>* readings,
+                                                 std::int32_t found,
+                                                 Knowledge<RealOf<Place>>& knowledge) const {
     using Real = RealOf<Place>;
+    using Mask = MaskOf<Real>;
+    const Mask none{}, is_open = are_all ? negated(knowledge.is_decided) : none;
+    Mask is_decided{};
     for (std::int32_t k = 0; k < found; ++k) {
       RigReading<Real>& fit = readings[k];
-      const MaskOf<Real> is_fit = fit.known & negated(fit.is_measured);
+      const Mask is_fit = fit.known & negated(fit.is_measured);
       if (!any(is_fit)) continue;
-      fit.known &= known | fit.is_measured;
-      for (std::int32_t j = 0; j < found; ++j) {
-        const RigReading<Real>& other = readings[j];
-        const MaskOf<Real> is_behind =
-            is_fit & other.known & other.is_measured & (other.distance < 0);
-        if (!any(is_behind)) continue;
-        const RigCamera& camera = cameras[other.camera];
-        const Place at = camera.from_rig * x;
-        const Place foot = camera.to_rig * (quotient(other.foot_depth, at.z) * at);
-        RigReading<Real> there{};
-        RigReader::read(cameras[fit.camera], foot, there);
-        const Real most = agreement[fit.camera * count + other.camera] * fit.depth;
-        fit.known &= negated(is_behind & there.known & (there.distance > most));
-      }
+      leave_out_contradicted(x, is_fit, k, readings, found);
+      const Mask is_before = is_fit & knowledge.is_measured & (fit.distance > 0);
+      fit.distance = is_before ? fit.distance - fit.nearer : fit.distance;
+      fit.known &=
+          negated(is_fit) | (is_before & (fit.distance > 0)) | (negated(is_before) & is_open);
+      const Mask is_taken = is_fit & fit.known & is_open;
+      knowledge.is_fitted |= is_taken;
+      is_decided |= is_taken & negated(is_well_before(fit));
+    }
+    if (!any(knowledge.is_fitted)) return;
+    for (std::int32_t k = 0; k < found; ++k) readings[k].is_measured |= readings[k].known & is_open;
+    leave_out_hidden(is_decided, readings, found);
+  }
+  // Leaves out a fit before which a place lies where another camera shows a surface that the fit's
+  // camera would see past: it has not measured something there.
+  template <class Place>
+  [[gnu::always_inline]] VPM_HD void leave_out_contradicted(const Place& x,
+                                                            const MaskOf<RealOf<Place>>& is_fit,
+                                                            std::int32_t k,
+                                                            RigReading<RealOf<Place>>* readings,
+                                                            std::int32_t found) const {
+    using Real = RealOf<Place>;
+    RigReading<Real>& fit = readings[k];
+    for (std::int32_t j = 0; j < found; ++j) {
+      const RigReading<Real>& other = readings[j];
+      const MaskOf<Real> is_behind =
+          is_fit & (fit.distance > 0) & other.known & other.is_measured & (other.distance < 0);
+      if (!any(is_behind)) continue;
+      const RigCamera& camera = cameras[other.camera];
+      const Place at = camera.from_rig * x;
+      const Place foot = camera.to_rig * (quotient(other.foot_depth, at.z) * at);
+      RigReading<Real> there{};
+      RigReader::read(cameras[fit.camera], foot, there);
+      const Real most = agreement[fit.camera * count + other.camera] * fit.depth + there.nearer;
+      fit.known &= negated(is_behind & there.known & (there.distance > most));
     }
   }
   // True where a camera has something well before a place.

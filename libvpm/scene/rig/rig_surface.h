@@ -30,13 +30,21 @@ struct RigSurface : RigSampler {
     CameraSet cameras = 0;
 
     VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
-      return rig->sample_near(x, cameras, HUGE_VAL);
+      return sample_within(x, HUGE_VAL);
+    }
+    VPM_HD SurfaceSample sample_within(Vec3 x, double reach, std::uint32_t = kNoPoint) const {
+      return rig->sample_near(x, cameras, reach);
     }
   };
 
   // Samples the surface, as the cameras see it that decide in a ball about x: kNoPoint are all.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t point = kNoPoint) const {
-    return sample_near(x, point & all_cameras(), HUGE_VAL);
+    return sample_within(x, HUGE_VAL, point);
+  }
+  // Samples the surface for a piece that reaches so far, m. Of one further before the surface only
+  // that is told; it is unknown if nothing was measured there.
+  VPM_HD SurfaceSample sample_within(Vec3 x, double reach, std::uint32_t point = kNoPoint) const {
+    return sample_near(x, point & all_cameras(), reach);
   }
   VPM_HD View around_ball(Vec3, double, std::uint32_t point) const {
     return {this, point & all_cameras()};
@@ -67,7 +75,8 @@ struct RigSurface : RigSampler {
       if (of_camera == Sight::hole && !has_fits(cameras[i], own)) continue;
       const CameraSet bit = CameraSet{1} << i;
       in_ball.point |= bit;
-      deciding |= own.side == Side::free ? 0 : bit;
+      deciding |=
+          own.side == Side::free && !may_be_behind_fit(cameras[i], own, at, radius) ? 0 : bit;
       if (own.side == Side::behind) {
         behind |= bit;
         if (is_hidden(cameras[i], own, at, radius)) hidden |= bit;
@@ -177,6 +186,12 @@ struct RigSurface : RigSampler {
   static VPM_HD bool has_fits(const RigCamera& camera, const DepthSurface::BallClass& own) {
     return camera.silhouettes.holes.numbers != nullptr &&
            camera.silhouettes.may_be_near(own.pixels);
+  }
+  // True if places in a ball may be behind the fits of a camera's holes.
+  static VPM_HD bool may_be_behind_fit(const RigCamera& camera, const DepthSurface::BallClass& own,
+                                       Vec3 at, double radius) {
+    return DepthSurface::sight_of(own) != Sight::seen && has_fits(camera, own) &&
+           camera.silhouettes.holes.may_be_behind(own.pixels, at.z + radius);
   }
   // True if a camera has seen all of a larger ball free, so that no mean of readings in the ball is
   // behind the surface.
