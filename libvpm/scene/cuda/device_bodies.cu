@@ -85,10 +85,9 @@ DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
                               cameras[i].silhouettes.columns,
                               {}};
     if (!found.holes().fits().empty())
-      cameras[i].silhouettes.holes = {memory_.copy(found.holes().fits()),
-                                      memory_.copy(found.holes().numbers()),
-                                      memory_.copy(found.holes().greatest()),
-                                      cameras[i].silhouettes.holes.columns};
+      cameras[i].silhouettes.holes = {
+          memory_.copy(found.holes().fits()), memory_.copy(found.holes().numbers()),
+          memory_.copy(found.holes().greatest()), cameras[i].silhouettes.holes.columns};
   }
   surface_.cameras = memory_.copy(cameras);
   surface_.agreement = memory_.copy(rig.agreement().of_pairs);

@@ -364,30 +364,22 @@ class SurfaceOfPixel {
     border_ = rim.border(is_first_near_ ? 0 : 1, is_first_near_ ? 1 : 0);
   }
 
-  struct Answer {
-    std::size_t surface = 0;
-    bool is_sure = true;  // false: it may as well be another one
-  };
-  Answer operator()(Pixel at) const {
-    if (rim_.all().size() == 1) return {};
+  std::size_t operator()(Pixel at) const {
+    if (rim_.all().size() == 1) return 0;
     if (border_) {
       const bool is_far = border_->aside(at.u, at.v) > kAside;
-      return {is_far == is_first_near_ ? 1U : 0U};
+      return is_far == is_first_near_ ? 1 : 0;
     }
-    Answer answer;
-    int least = INT_MAX, next = INT_MAX;
+    std::size_t nearest = 0;
+    int least = INT_MAX;
     for (std::size_t k = 0; k < rim_.all().size(); ++k) {
       const int own = squared_distance(rim_.all()[k], at);
-      next = std::min(next, std::max(least, own));
-      if (own < least) least = own, answer.surface = k;
+      if (own < least) least = own, nearest = k;
     }
-    answer.is_sure = next > kMuchFurther * kMuchFurther * least;
-    return answer;
+    return nearest;
   }
 
  private:
-  static constexpr int kMuchFurther = 2;  // times
-
   static int squared_distance(const RimSurface& surface, Pixel at) {
     int least = INT_MAX;
     for (const Pixel& pixel : surface.pixels) {
@@ -402,27 +394,16 @@ class SurfaceOfPixel {
   std::optional<Border> border_;
 };
 
-// Calls tell(fit, pixels) for each surface that goes on in a hole. Where it may as well be another
-// one, a fit may be nearer by as much as that is.
+// Calls tell(fit, pixels) for each surface that goes on in a hole.
 template <class Tell>
 void fit_hole(const DepthSampler& image, const Hole& hole, const Tell& tell) {
   const RimSurfaces rim(image, hole);
   if (!rim.are_told()) return;
   const SurfaceOfPixel surface_of(rim);
-  std::vector<std::vector<Pixel>> sure(rim.all().size()), unsure(rim.all().size());
-  for (const Pixel& pixel : hole.pixels) {
-    const auto [surface, is_sure] = surface_of(pixel);
-    (is_sure ? sure : unsure)[surface].push_back(pixel);
-  }
-  float nearest = 0;
-  for (const RimSurface& surface : rim.all())
-    nearest = std::max(nearest, surface.fit.a + surface.fit.nearer);
-  for (std::size_t k = 0; k < rim.all().size(); ++k) {
-    HoleFit fit = rim.all()[k].fit;
-    if (!sure[k].empty()) tell(fit, sure[k]);
-    fit.nearer = nearest - fit.a;
-    if (!unsure[k].empty()) tell(fit, unsure[k]);
-  }
+  std::vector<std::vector<Pixel>> pixels(rim.all().size());
+  for (const Pixel& pixel : hole.pixels) pixels[surface_of(pixel)].push_back(pixel);
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+    if (!pixels[k].empty()) tell(rim.all()[k].fit, pixels[k]);
 }
 
 // Bounds the inverse depth of a fit in a pixel from above.
