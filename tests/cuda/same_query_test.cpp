@@ -157,14 +157,11 @@ TEST(SameQueryOfARig, OnCpuAndDevice) {
   }
   for (const bool have_all_holes : {false, true}) {
     if (have_all_holes) images.erase(images.begin());
-    double most = 0, unseen = 0;
+    double most = 0;
     for (const Result& found :
-         same_answers(testing::lattice_cube(0.12, 9, 3), AnyBody(RigBody(images)), poses)) {
+         same_answers(testing::lattice_cube(0.12, 9, 3), AnyBody(RigBody(images)), poses))
       most = std::max(most, found.volume_fraction);
-      unseen = std::max(unseen, found.visibility->unseen);
-    }
     EXPECT_GT(most, 0.3);
-    EXPECT_GT(unseen, 0);
   }
 }
 
