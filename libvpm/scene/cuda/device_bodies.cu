@@ -87,7 +87,7 @@ DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
     if (!found.holes().fits().empty())
       cameras[i].silhouettes.holes = {
           memory_.copy(found.holes().fits()), memory_.copy(found.holes().numbers()),
-          memory_.copy(found.holes().greatest()), cameras[i].silhouettes.holes.columns};
+          memory_.copy(found.holes().greatest()), found.holes().view().columns};
   }
   surface_.cameras = memory_.copy(cameras);
   surface_.agreement = memory_.copy(rig.agreement().of_pairs);

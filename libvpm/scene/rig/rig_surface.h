@@ -175,12 +175,11 @@ struct RigSurface : RigSampler {
   }
 
   // Returns the class of a ball before one camera, decided by the plane at its middle too: samples
-  // of a rig take many times as long. Not where something was not measured: balls in this one have
-  // other planes, and what is unseen of them must not depend on which balls are asked.
+  // of a rig take many times as long.
   static VPM_HD DepthSurface::BallClass class_of(const DepthSurface& image, Vec3 at,
                                                  double radius) {
     DepthSurface::BallClass own = image.classify_ball(at, radius);
-    if (DepthSurface::sight_of(own) == Sight::seen) own.side = image.side_by_plane(own, at, radius);
+    own.side = image.side_by_plane(own, at, radius);
     return own;
   }
   // True if the fits of a camera's holes may tell of places in a ball.
