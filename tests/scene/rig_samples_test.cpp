@@ -37,7 +37,11 @@ void expect_samples_of_each(const RigSurface::View& view, std::span<const CellSa
     const bool is_left_out = next == wanted || reached[next].sample != k;
     EXPECT_EQ(is_left_out, alone.known && alone.distance >= radius) << k;
     if (is_left_out) continue;
+    const Vec3 x = reached[next].at.x;
     const SurfaceSample& found = reached[next++].at.on_surface;
+    if (is_behind_surface(alone)) {
+      EXPECT_EQ(view.rig->closest_normal(x, found), view.rig->closest_normal(x, alone)) << k;
+    }
     told.deeper += is_behind_surface(alone) && alone.distance < -deepest;
     if (found.known && squared_norm(found.normal) == 0) {
       EXPECT_TRUE(alone.known && alone.distance <= -radius && alone.distance >= -deepest) << k;

@@ -65,7 +65,9 @@ struct RigSampler {
     if (found == 0) return on_surface;
     on_surface.known = knowledge.is_measured | knowledge.is_fitted;
     Nearest<Real> nearest = nearest_of(readings, found);
-    const MaskOf<Real> is_behind = is_clearly_behind(nearest, enough, deepest);
+    // Behind a fit where nobody has measured anything, its normal is the way out.
+    const MaskOf<Real> is_behind =
+        negated(knowledge.is_fitted) & is_clearly_behind(nearest, enough, deepest);
     if (all(negated(on_surface.known) | is_clearly_before(nearest, enough) | is_behind)) {
       on_surface.distance = is_behind ? nearest.greatest : nearest.length;
     } else {
