@@ -161,6 +161,14 @@ def replay(report):
     return text
 
 
+def replay_clutter(report):
+    rows = [[r["scene"].replace("redkitchen_seq/", ""), thousands(r["spheres"]), f"{r['median_us']:.0f} / {r['p99_us']:.0f}",
+             f"{r['grid_median_us']:.0f} / {r['grid_p99_us']:.0f}",
+             f"{r['median_us'] / r['grid_median_us']:.2f} / {r['p99_us'] / r['grid_p99_us']:.2f}"]
+            for r in report["results"] if r["part"] == "clutter"]
+    return table(["poses in clutter", "spheres", "µs median / p99, one core", "distance grid, no volume", "ratio"], rows)
+
+
 def replay_coherent(report):
     of = {(r["path"], r["spheres"]): r for r in report["results"] if r["part"] == "coherent"}
     levels = sorted({spheres for _, spheres in of})
@@ -272,6 +280,13 @@ def cuda(report):
                   for r in rotated])
 
 
+def cuda_clutter(report):
+    sizes = [b["batch"] for b in report["rows"][0]["batches"]]
+    rows = [[r["scene"], thousands(r["spheres"]), median_and_p99(r["single"])]
+            + [f"{1e6 / b['poses_per_second']:.1f}" for b in r["batches"]] for r in report["rows"]]
+    return table(["poses in clutter", "spheres", "one by one, µs median / p99"] + [f"µs a pose, {thousands(n)} together" for n in sizes], rows)
+
+
 def cuda_frame_rows(report):
     of = {}
     for r in report["control_loop"]:
@@ -303,7 +318,7 @@ def scaling(report):
         f" {report['settings']['rounds']} rounds for each of {len(frames)} frames: refined {least_to_most('refined_us', 1, 0)} µs.")
 
 
-def reached(accuracy, timing, replay, packing, cuda):
+def reached(accuracy, timing, replay, packing, cuda, clutter, clutter_on_device):
     """Returns the table of the top page: a handful of numbers, each from the results named."""
     rows = []
     group = lambda **wanted: next(s for s in accuracy["settings"]["summary"]
@@ -320,8 +335,14 @@ def reached(accuracy, timing, replay, packing, cuda):
                            and r["spheres"] == n and r["threads"] == 1)
     on_device = lambda n: next(r for r in cuda["control_loop"] if r["measure"] == "refined" and r["spheres"] == n
                                and r["copies"] > 1)
+    things = next(r for r in clutter["results"] if r["spheres"] == 1000)
+    rows.append(["a query among things on a table, one core", f"{things['median_us']:.0f} µs, one in a hundred {things['p99_us']:.0f}"])
+    kitchen = next(r for r in clutter_on_device["rows"] if r["scene"] == "kitchen" and r["spheres"] == 1000)
+    rows.append([f"in a recorded kitchen, {clutter_on_device['device'].split(',')[0]}",
+                 f"{kitchen['single']['median_us']:.0f} µs, one in a hundred {kitchen['single']['p99_us']:.0f}; in batches"
+                 f" {1e6 / kitchen['batches'][-1]['poses_per_second']:.0f} a pose"])
     for n in (1000, 100000):
-        rows.append([f"a query with {thousands(n)} spheres, one core", f"{query(n)['median_us']:.0f} µs"])
+        rows.append([f"a query with {thousands(n)} spheres before a wall, one core", f"{query(n)['median_us']:.0f} µs"])
         rows.append([f"the same on {cuda['device'].split(',')[0]}", f"{on_device(n)['median_us']:.0f} µs"])
     frame = next(r for r in timing["results"] if r["stage"] == "frame, all at once" and r["threads"] == 1)
     rows.append(["from a depth image of 640×480 pixels to a scene ready for queries, one core",
@@ -485,7 +506,7 @@ def fuzz(report):
 
 
 # Maps each page to its tables: the function that makes it, and the suites whose results it takes.
-PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "packing", "cuda")},
+PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "packing", "cuda", "replay_clutter", "cuda_clutter")},
          "tests/results/README.md": {
              "accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
              "bounds solid": (bounds, "accuracy_solid"), "intervals": (intervals, "intervals"),
@@ -494,10 +515,10 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
              "packing cost": (packing_cost, "packing"), "packing smooth": (packing_smooth, "packing_smooth"),
              "packing fit": (packing_fit, "packing_fit"),
-             "replay": (replay, "replay"),
+             "replay": (replay, "replay"), "replay clutter": (replay_clutter, "replay_clutter"),
              "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
-             "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
+             "cuda clutter": (cuda_clutter, "cuda_clutter"), "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frame_rows, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
              "scaling": (scaling, "scaling"), "threads": (threads, "threads"), "python": (python, "python"),
              "list": (over_a_list, "list"), "list on GPUs": (list_on_gpus, "list_gpus"), "cameras": (cameras, "cameras"), "pairs": (pairs, "solid_pairs"),
