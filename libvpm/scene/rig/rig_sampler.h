@@ -38,16 +38,18 @@ struct RigSampler {
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_near(
       const Place& x, CameraSet some, const RealOf<Place>& enough, double deepest = 0) const {
     using Real = RealOf<Place>;
+    SurfaceSampleOf<Real> sampled;
     MaskOf<Real> is_decided{};
-    const SurfaceSampleOf<Real> near = sample_by(x, some, enough, deepest, is_decided);
-    if (some == all_cameras() || all(is_decided)) return near;
-    MaskOf<Real> ignored{};
-    SurfaceSampleOf<Real> sampled = sample_by(x, all_cameras(), enough, deepest, ignored);
-    sampled.known = (is_decided & near.known) | (negated(is_decided) & sampled.known);
-    sampled.distance = is_decided ? near.distance : sampled.distance;
-    sampled.normal = choose(is_decided, near.normal, sampled.normal);
-    sampled.foot = choose(is_decided, near.foot, sampled.foot);
-    return sampled;
+    // Compiles sample_by() once: two calls of it take the compiler twice as long.
+    for (CameraSet asked = some;; asked = all_cameras()) {
+      const MaskOf<Real> is_taken = is_decided;
+      const SurfaceSampleOf<Real> found = sample_by(x, asked, enough, deepest, is_decided);
+      sampled.known = (is_taken & sampled.known) | (negated(is_taken) & found.known);
+      sampled.distance = is_taken ? sampled.distance : found.distance;
+      sampled.normal = choose(is_taken, sampled.normal, found.normal);
+      sampled.foot = choose(is_taken, sampled.foot, found.foot);
+      if (asked == all_cameras() || all(is_decided)) return sampled;
+    }
   }
 
   // Samples the surface as these cameras see it. A reading from well before x counts only where
