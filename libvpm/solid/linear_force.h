@@ -9,6 +9,9 @@ namespace vpm {
 struct ForceAndTorque {
   Vec3 force, torque;  // torque about the origin
 };
+inline ForceAndTorque operator*(double weight, const ForceAndTorque& f) {
+  return {weight * f.force, weight * f.torque};
+}
 
 // Returns ∫ -d n dA and ∫ -d x cross n dA over a piece with these moments, where d is linear:
 // `depth` at the place x. All in one frame.

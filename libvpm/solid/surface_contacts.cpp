@@ -126,6 +126,15 @@ void SurfacePair::note_cut_force(std::size_t which, std::uint32_t element, const
   force_pieces_.push_back({role, true, face_ == kNone, element, piece.force, {{sampled, deepest}}});
 }
 
+// Returns the piece with the force on a part of it alone.
+SurfacePair::LinearPiece SurfacePair::part_of(const LinearPiece& piece,
+                                              const CrossedTriangle& part) {
+  LinearPiece of_part = piece;
+  of_part.force = piece.weight * linear_force(part.moments(), piece.depth, piece.place);
+  of_part.middle = middle_of(part);
+  return of_part;
+}
+
 void SurfacePair::note_force_of_face(std::size_t which, const CrossedTriangle& triangle,
                                      const LinearPiece& piece) {
   const auto role = static_cast<std::uint32_t>(which);
@@ -134,10 +143,7 @@ void SurfacePair::note_force_of_face(std::size_t which, const CrossedTriangle& t
   if (only != kNone) return note_cut_force(which, only, piece, triangle.corner, inside);
   for (const std::uint32_t part : parts_->parts_of_face(role, face_)) {
     const CrossedTriangle of_part = parts_->piece(role, face_, part);
-    LinearPiece linear = piece;
-    linear.force = linear_force(of_part.moments(), piece.depth, piece.place);
-    linear.middle = middle_of(of_part);
-    note_cut_force(which, part, linear, {}, 0);
+    note_cut_force(which, part, part_of(piece, of_part), {}, 0);
   }
 }
 
@@ -186,11 +192,7 @@ void SurfacePair::note_force_of_split_cell(std::size_t which, const DepthCell& c
       if (point.edge == 1 && part_at(point.place) == part)
         of_part.add_far_point(point.sign, point.place);
     if (at_corner == part) of_part.add_corner_inside();
-    LinearPiece linear = piece;
-    const ForceAndTorque f = linear_force(of_part.moments(), piece.depth, piece.place);
-    linear.force = {piece.weight * f.force, piece.weight * f.torque};
-    linear.middle = middle_of(of_part);
-    note_cut_force(which, part, linear, {}, 0);
+    note_cut_force(which, part, part_of(piece, of_part), {}, 0);
   }
 }
 

@@ -16,8 +16,9 @@ namespace {
 // slab's thickness relative to the depth, and the longest edge of triangles and
 // cells of triangles relative to the reach.
 constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.12;
-// Planes that cross a triangle stand for the depth below them if the square of their mean normal
-// misses 1 by less than this; where they disagree there is a crease.
+// Where the other solid's planes cut a piece, the depth in it is taken below their mean plane if
+// they agree: if the squared length of the mean of their unit normals is less than 1 by no more
+// than this. Where they disagree the other solid has a crease.
 constexpr double kDisagreeing = 0.04;
 // Mean depth, relative to the smaller reach, from which on no piece is looked
 // at twice, and the least one that is told from none.
@@ -419,7 +420,8 @@ double SurfacePair::share_of_plausible(std::size_t which, const Foretold& below_
   return std::min(agreeing, share_below(kPlausibleCells * other.grid_cell(), std::abs(error)));
 }
 
-// Returns a share of the depth below planes, and for the rest that at a place.
+// Returns the weighted mean of two depths that are linear about a place: of the depth below planes
+// that cut a piece there, with weight `share`, and of what depth_at() finds, with the rest of 1.
 SurfacePair::Foretold SurfacePair::mixed_with_depth(std::size_t which, const Foretold& below_planes,
                                                     double share, Vec3 place) {
   if (!(share < 1)) return below_planes;
@@ -462,8 +464,7 @@ SurfacePair::Foretold SurfacePair::depth_at(std::size_t which, Vec3 place) {
 
 SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments,
                                                     const Foretold& linear, double weight) {
-  const ForceAndTorque all = linear_force(moments, linear.depth, linear.place);
-  const ForceAndTorque f{weight * all.force, weight * all.torque};
+  const ForceAndTorque f = weight * linear_force(moments, linear.depth, linear.place);
   roles_[which].sums.cut_wrench.add(f.force, f.torque);
   return {linear.depth, linear.place, f, linear.place, weight};
 }

@@ -200,6 +200,7 @@ class SurfacePair {
                           const LinearPiece& piece);
   void note_force_of_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
                           Vec3 normal);
+  static LinearPiece part_of(const LinearPiece& piece, const CrossedTriangle& part);
   void note_force_of_split_cell(std::size_t role, const DepthCell& cell, const LinearPiece& piece,
                                 Vec3 normal);
   void note_cut_force(std::size_t role, std::uint32_t element, const LinearPiece& piece,
