@@ -76,13 +76,12 @@ for level in ${levels//,/ }; do
 done
 
 python3 - "$out" "$work" "$commit" "$tests" "${sanitizers[*]}" "${same[*]}" "$(dirname "$0")" <<'PYTHON'
-import glob, json, subprocess, sys
+import glob, json, sys
 out, work, commit, tests, sanitizers, same, scripts = sys.argv[1:]
 sys.path.insert(0, scripts)
 import loop_rounds
 pairs = lambda text: dict(item.split("=") for item in text.split())
-smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"],
-                     capture_output=True, text=True).stdout.strip()
+smi = loop_rounds.device()
 report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),

@@ -32,14 +32,13 @@ for cloud in "$@"; do
 done
 
 python3 - "$out" "$work" "$commit" "$failed" "$(dirname "$0")" "$levels" "$@" <<'PYTHON'
-import glob, json, os, statistics, subprocess, sys
+import glob, json, os, statistics, sys
 out, work, commit, failed, scripts, levels, *clouds = sys.argv[1:]
 sys.path.insert(0, scripts)
 import loop_rounds
-smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"], capture_output=True, text=True)
 def load(pattern):
     return [json.load(open(path)) for path in sorted(glob.glob(f"{work}/{pattern}"))]
-report = {"command": "scripts/cuda_clutter.sh", "commit": commit, "device": smi.stdout.strip(), "same_bytes_as_cpu": failed == "0", "rows": []}
+report = {"command": "scripts/cuda_clutter.sh", "commit": commit, "device": loop_rounds.device(), "same_bytes_as_cpu": failed == "0", "rows": []}
 for cloud in clouds:
     scene = os.path.basename(cloud).removesuffix(".vpmc")
     for level in map(int, levels.split(",")):

@@ -1,8 +1,15 @@
-"""Merges several rounds of control-loop into one, for scripts/cuda_check.sh and cuda_frames_check.sh."""
+"""Merges several rounds of control-loop into one, for scripts/cuda_*.sh."""
 import collections
 import glob
 import json
 import statistics
+import subprocess
+
+
+def device():
+    """Returns names and drivers of the NVIDIA devices of this machine, as reports tell them."""
+    return subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"],
+                          capture_output=True, text=True).stdout.strip()
 
 
 def of_rounds(reports):
