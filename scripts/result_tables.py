@@ -340,7 +340,7 @@ def reached(accuracy, timing, replay, packing, cuda, clutter, clutter_on_device)
     kitchen = next(r for r in clutter_on_device["rows"] if r["scene"] == "kitchen" and r["spheres"] == 1000)
     rows.append([f"in a recorded kitchen, {clutter_on_device['device'].split(',')[0]}",
                  f"{kitchen['single']['median_us']:.0f} µs, one in a hundred {kitchen['single']['p99_us']:.0f}; in batches"
-                 f" {1e6 / kitchen['batches'][-1]['poses_per_second']:.0f} a pose"])
+                 f" {1e6 / kitchen['batches'][-1]['poses_per_second']:.0f} µs a pose"])
     for n in (1000, 100000):
         rows.append([f"a query with {thousands(n)} spheres before a wall, one core", f"{query(n)['median_us']:.0f} µs"])
         rows.append([f"the same on {cuda['device'].split(',')[0]}", f"{on_device(n)['median_us']:.0f} µs"])

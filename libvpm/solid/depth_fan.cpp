@@ -7,10 +7,11 @@
 namespace vpm {
 namespace {
 
-// Segments so near to an end of what is inside of an edge tell the depth there, relative to the
-// length of what is inside.
+// A part of a cell's edge that lies inside the other solid begins and ends at a corner or at a cut.
+// Cuts (segments) tell the depth at such an end if they are no further from it than this, relative
+// to the length of the part.
 constexpr double kNear = 0.25;
-// Depth times length that is none, in the unit that no coordinate exceeds.
+// Least product of a length and a depth to divide by, in the unit that no coordinate exceeds.
 constexpr double kNothing = 1e-15;
 
 // A depth d(t) on the way from the border, t = 0, to a place of known depth, t = 1: it grows from 0

@@ -31,10 +31,11 @@ using vpm::absolute, vpm::mask_of;
 [[gnu::always_inline]] inline Floats side_by_side(const Float4& b, const Float4& a) {
   return __builtin_shuffle(row(b), row(a), Ints{0, 1, 2, 3, 8, 9, 10, 11});
 }
-// Eight lanes stand for pairs of children: of each of two children of one node with all four of the
-// other. twice() gives each lane the value of the one of the four, from the lower lanes;
-// upper_twice() takes the upper lanes instead. fourfold() gives each lane the value of the one of
-// the two, which are in lanes `first` (0 or 2) and `first` + 1.
+// The eight lanes of a vector stand for eight pairs of children: two children of one node, each
+// with all four of another. These functions give each lane the value that belongs to its child.
+// twice() repeats the values of the four children, which lie in the lower four lanes; upper_twice()
+// does so from the upper four. fourfold() repeats the values of the two children, which lie in the
+// lanes `first` (0 or 2) and `first` + 1, four times each.
 [[gnu::always_inline]] inline Floats twice(const Floats& v) {
   return __builtin_shuffle(v, Ints{0, 1, 2, 3, 0, 1, 2, 3});
 }

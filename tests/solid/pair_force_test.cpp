@@ -134,9 +134,9 @@ TEST(PairForce, OfConvexSolidsAgreesWithCubature) {
   }
 }
 
-// Along paths in steps of a 4000th of the smaller reach nothing jumps: second differences are
-// small, where faces are curved, large, flush, or of thin solids, whose pieces are sampled as
-// finely as they must be: plates of which a cut passes corners of such pieces.
+// Forces do not jump along paths in steps of a 4000th of the smaller reach: their second
+// differences are small. Tried are faces that are curved, large or flush, and plates, whose cuts
+// pass the corners of many small pieces.
 TEST(PairForce, DoesNotJumpAlongPaths) {
   struct Path {
     Solid a, b;

@@ -241,7 +241,7 @@ class RimSurfaces {
       if (label(pixel) == kUnlabelled) add(connected_to(pixel), kSplits);
   }
 
-  // False where one of them is not smooth: nobody knows what goes on in the hole.
+  // True if the rim tells what goes on in the hole: it has surfaces, and all of them are smooth.
   bool are_told() const { return is_told_ && !surfaces_.empty(); }
   const std::vector<RimSurface>& all() const { return surfaces_; }
 
@@ -406,7 +406,7 @@ void fit_hole(const DepthSampler& image, const Hole& hole, const Tell& tell) {
     if (!pixels[k].empty()) tell(rim.all()[k].fit, pixels[k]);
 }
 
-// Bounds the inverse depth of a fit in a pixel from above.
+// Returns an upper bound of the inverse depth, 1/m, that a fit has anywhere in the area of a pixel.
 float greatest_at(const HoleFit& fit, Pixel at) {
   constexpr double kHalf = 0.5, kRounding = 1 + 1e-6;
   const double x = at.u - double{fit.u}, y = at.v - double{fit.v};

@@ -14,9 +14,9 @@
 
 namespace emulator {
 
-// Longest time for which cudaStreamQuery() and cudaEventQuery() wait for work to end before they
-// tell that it has not. Callers ask again at once, and would take the processor from the device,
-// whose threads are those of the host.
+// cudaStreamQuery() and cudaEventQuery() of the emulated device wait up to this long for the work
+// to end, and only then answer that it has not. Callers ask again at once: without the wait they
+// would take the processor from the emulated device, whose threads are those of the host.
 constexpr std::chrono::milliseconds kPatience{1};
 
 class Stream {
