@@ -48,6 +48,27 @@ void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin
 
 }  // namespace
 
+NumberedSamples numbered_samples(const Level& level) {
+  NumberedSamples numbered{level.samples, {}};
+  auto face = level.faces.begin();
+  for (const CellBlock& block : level.blocks) {
+    if (face == level.faces.end() || face->sample >= block.end) continue;
+    std::uint32_t k = face->sample - (face->sample - block.begin) % FaceRow::kLanes;
+    for (; k < block.end; ++k) {
+      const std::uint32_t lane = (k - block.begin) % FaceRow::kLanes;
+      if (lane == 0) numbered.rows.emplace_back();
+      CellSample& sample = numbered.samples[k];
+      const float r = sample.radius;
+      numbered.rows.back().set(lane, sample,
+                               face != level.faces.end() && face->sample == k
+                                   ? *face++
+                                   : SampleFace{k, {1, 0, 0}, r, r, r, r});
+      sample.radius = -1 - static_cast<float>((numbered.rows.size() - 1) * FaceRow::kLanes + lane);
+    }
+  }
+  return numbered;
+}
+
 std::vector<BlockMass> block_masses(const Level& level) {
   std::vector<BlockMass> masses;
   for (std::uint32_t b = 0; b < level.blocks.size(); ++b)

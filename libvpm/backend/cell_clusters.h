@@ -23,6 +23,17 @@ struct CellClusters {
 
 std::vector<BlockMass> block_masses(const Level& level);
 
+// Holds the samples of a level with the numbers of their faces, and these in rows (SampleFaces): a
+// row for every four samples of a block, counted from its first, of which one is beside a face;
+// balls among these are asked as it is.
+struct NumberedSamples {
+  std::vector<CellSample> samples;
+  std::vector<FaceRow> rows;
+
+  SampleFaces faces() const { return {rows.data()}; }
+};
+NumberedSamples numbered_samples(const Level& level);
+
 CellClusters cluster_cells(const ToolModel& tool, const Level& level);
 
 // Returns the ball that encloses the cells in rows [begin, end).

@@ -155,6 +155,9 @@ template <class Get>
 [[gnu::always_inline]] inline Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+[[gnu::always_inline]] inline Vec3x4 operator*(const Rotation& r, const Vec3x4& a) {
+  return {dot(r.row0, a), dot(r.row1, a), dot(r.row2, a)};
+}
 [[gnu::always_inline]] inline Vec3x4 operator*(const Pose& p, const Vec3x4& a) {
   return {dot(p.rotation.row0, a) + p.translation.x, dot(p.rotation.row1, a) + p.translation.y,
           dot(p.rotation.row2, a) + p.translation.z};

@@ -46,14 +46,15 @@ Frame frame_of(const Solid& solid) {
 
 struct Normalized {
   Frame frame;
-  Solid solid;
+  Solid solid, boundary;
   MassProperties mass;
   std::vector<Sphere> spheres;
 };
 
-Normalized normalize(const Packing& packing, const MassProperties& mass) {
-  Normalized n{frame_of(packing.solid), packing.solid, mass, packing.spheres};
-  for (Vec3& v : n.solid.vertices) v = n.frame.to(v);
+Normalized normalize(const Packing& packing, const Solid& boundary, const MassProperties& mass) {
+  Normalized n{frame_of(packing.solid), packing.solid, boundary, mass, packing.spheres};
+  for (Solid* const solid : {&n.solid, &n.boundary})
+    for (Vec3& v : solid->vertices) v = n.frame.to(v);
   for (Sphere& s : n.spheres) s = {n.frame.to(s.center), s.radius / n.frame.unit};
   n.mass = {mass.volume / n.frame.cubed(), n.frame.to(mass.center_of_mass)};
   return n;
@@ -116,7 +117,8 @@ void fill_graph(const SphereBvh& bvh, const Frame& frame, Level& level) {
   level.graph = with_edges(edges, bridges);
 }
 
-VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& level) {
+VoronoiQuality fill_cells(const Normalized& n, const SolidFaces& faces, const SphereBvh& bvh,
+                          Level& level) {
   const double pieces = std::clamp(kPiecesPerSphere * level.sphere_count, kMinPieces, kMaxPieces);
   VoronoiCells cells = find_voronoi_cells(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
   for (std::size_t i = 0; i < level.sphere_count; ++i) {
@@ -125,11 +127,12 @@ VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& leve
     level.cell_radius.push_back(n.frame.unit * cells.radius[i]);
   }
   const double size = std::cbrt(n.mass.volume) / samples_per_length(level.sphere_count);
-  CutCells all =
-      cut_cells(bvh.spheres(), cells, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
+  CutCells all = cut_cells(bvh.spheres(), cells, faces, size, n.mass.center_of_mass, n.frame.unit,
+                           n.mass.volume);
   level.block_begin = std::move(all.block_begin);
   level.blocks = std::move(all.blocks);
   level.samples = std::move(all.samples);
+  level.faces = std::move(all.faces);
   return cells.quality;
 }
 
@@ -155,7 +158,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
   const Solid boundary = packing.is_boundary ? packing.solid : enclosed_surface(packing.solid);
   const MassProperties mass = mass_properties(boundary);
   if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
-  const Normalized n = normalize(packing, mass);
+  const Normalized n = normalize(packing, boundary, mass);
 
   ToolModel model;
   model.volume = mass.volume;
@@ -164,6 +167,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
   model.solid_hash = content_hash(packing.solid);
   model.spheres = packing.spheres;
   if (options.surface) keep_surface(boundary, model);
+  const SolidFaces faces(n.boundary, model.radius / n.frame.unit);
   const auto counts = level_counts(options, static_cast<std::uint32_t>(packing.spheres.size()));
   for (const std::uint32_t count : counts) {
     Level level;
@@ -175,7 +179,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
     fill_graph(bvh, n.frame, level);
     level.hierarchy = build_hierarchy(spheres);
     level.grid = build_point_location_grid(spheres);
-    const VoronoiQuality found = fill_cells(n, bvh, level);
+    const VoronoiQuality found = fill_cells(n, faces, bvh, level);
     if (quality != nullptr) quality->push_back(found);
     model.levels.push_back(std::move(level));
     if (options.progress) {

@@ -117,19 +117,20 @@ std::vector<Cut> make_cuts(const Solid& solid) {
   return cuts;
 }
 
-double fraction_inside(const Level& level, const CellBlock& block, const TangentPlane& plane) {
+double fraction_inside(const NumberedSamples& numbered, const CellBlock& block,
+                       const TangentPlane& plane) {
   double sum = 0;
   for (std::uint32_t k = block.begin; k < block.end; ++k) {
-    const CellSample& s = level.samples[k];
+    const CellSample& s = numbered.samples[k];
     bool is_cut = false;
-    sum += weight_behind(shape_of(s), plane.normal, plane.distance(widen(s.center)),
-                         double{s.weight}, is_cut);
+    sum += weight_behind(shape_of(s, numbered.faces()), plane.normal,
+                         plane.distance(widen(s.center)), double{s.weight}, is_cut);
   }
   return sum;
 }
 
 double fraction_inside(const ToolModel& model, const Level& level, const CellClusters& clusters,
-                       const Cut& cut) {
+                       const NumberedSamples& numbered, const Cut& cut) {
   double sum = 0;
   for (const CellCluster& cluster : clusters.clusters) {
     TangentPlane mean;
@@ -139,7 +140,7 @@ double fraction_inside(const ToolModel& model, const Level& level, const CellClu
       const std::uint32_t i = clusters.cells[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
         const CellBlock& block = level.blocks[b];
-        sum += fraction_inside(level, block,
+        sum += fraction_inside(numbered, block,
                                is_planar ? mean : cut.plane_of_block(widen(block.center)));
       }
     }
@@ -167,7 +168,11 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   centered = enclosed_surface(centered);
   std::vector<Cut> cuts = make_cuts(centered);
   std::vector<CellClusters> clusters;
-  for (const Level& level : model.levels) clusters.push_back(cluster_cells(model, level));
+  std::vector<NumberedSamples> samples;
+  for (const Level& level : model.levels) {
+    clusters.push_back(cluster_cells(model, level));
+    samples.push_back(numbered_samples(level));
+  }
   std::vector<std::vector<double>> errors(model.levels.size(), std::vector<double>(cuts.size()));
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -177,7 +182,7 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
                       ? volume_below_plane(centered, normal, dot(normal, cut.plane.foot))
                       : volume_in_ball(centered, cut.ball);
       for (std::size_t l = 0; l < model.levels.size(); ++l) {
-        const double inside = fraction_inside(model, model.levels[l], clusters[l], cut);
+        const double inside = fraction_inside(model, model.levels[l], clusters[l], samples[l], cut);
         errors[l][k] = std::abs(inside - cut.truth / model.volume);
       }
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/lanes.h"
@@ -159,14 +160,17 @@ void measure(const std::vector<Point>& points, double spacing, double radius,
   const double half_diagonal = 0.5 * std::sqrt(3.0) * spacing;
   for (const Point& p : points) {
     CellPiece& piece = pieces[static_cast<std::size_t>(p.piece)];
-    const double squared = squared_norm(p.position - piece.centroid);
+    const Vec3 d = p.position - piece.centroid;
+    const double squared = squared_norm(d);
     piece.moment_radius += p.weight * (squared + spacing * spacing / 4);
     piece.bounding_radius = std::max(piece.bounding_radius, squared);
+    piece.moment.add(p.weight, d, spacing / 2 * Vec3{1, 1, 1});
   }
   const double scale = volume({{}, radius}) / total;
   for (CellPiece& piece : pieces) {
     piece.moment_radius = std::sqrt(5.0 / 3 * piece.moment_radius / piece.volume);
     piece.bounding_radius = std::sqrt(piece.bounding_radius) + half_diagonal;
+    piece.moment.scale(1 / piece.volume);
     piece.volume *= scale;
   }
 }
@@ -177,7 +181,7 @@ void cut_ball(double radius, double size, std::vector<CellPiece>& pieces) {
   const double edge = kCubicEdge * size;
   const double limit = radius / edge - kSiteInset / kCubicEdge;  // in units of the lattice
   if (limit < std::sqrt(0.75)) {  // the sites nearest to the first lie at sqrt(3/4)
-    pieces.push_back({{}, volume({{}, radius}), radius, radius});
+    pieces.push_back({{}, volume({{}, radius}), radius, radius, Moment::of_ball(radius)});
     return;
   }
   BodyCenteredSites sites(limit);
@@ -234,17 +238,19 @@ class GapCutter {
     return low;
   }
 
-  // Keeps a piece that is cut no further, with its bounding radius.
+  // Keeps a piece that is cut no further, with its bounding radius and its second moment.
   void keep(CellPiece piece, std::span<const GapSegment> segments) {
-    for (const GapSegment& s : segments)
-      piece.bounding_radius =
-          std::max(piece.bounding_radius,
-                   norm(s.center - center_ - piece.centroid) + norm(gap_.half_extent(s)));
+    for (const GapSegment& s : segments) {
+      const Vec3 d = s.center - center_ - piece.centroid, half_extent = gap_.half_extent(s);
+      piece.bounding_radius = std::max(piece.bounding_radius, norm(d) + norm(half_extent));
+      piece.moment.add(scale_ * gap_.volume(s), d, half_extent);
+    }
+    piece.moment.scale(1 / piece.volume);
     pieces_.push_back(piece);
   }
 
-  // Returns the piece that the segments form, without its bounding radius; `spread` receives the
-  // second moments of their centres along the axes.
+  // Returns the piece that the segments form, without its bounding radius and second moment;
+  // `spread` receives the second moments of their centres along the axes.
   CellPiece measure(std::span<const GapSegment> segments, Vec3& spread) const {
     CellPiece piece;
     for (const GapSegment& s : segments) {
@@ -313,15 +319,30 @@ float round_up(double value) {
                                  : rounded;
 }
 
+float round_down(double value) {
+  return -round_up(-value);
+}
+
 // Maps pieces about a sphere's centre to stored coordinates.
 struct Placement {
-  Vec3 center;  // sphere's centre relative to the stored origin
+  Vec3 origin;  // of what is stored
+  Vec3 center;  // sphere's centre relative to it
   double unit = 1, volume = 1;
 
   Vec3f place(Vec3 p) const { return narrow(unit * (center + p)); }
   CellSample sample(const CellPiece& piece) const {
     return {place(piece.centroid), static_cast<float>(unit * piece.moment_radius),
             piece.volume / volume};
+  }
+  // Finds the face beside a piece, as it lies when its centroid is stored.
+  void find_face(const SolidFaces& faces, CellPiece& piece) const {
+    const Vec3 stored = widen(place(piece.centroid)) / unit + origin;
+    piece.face = faces.beside(stored, piece.moment_radius, piece.moment);
+  }
+  SampleFace face(const FaceExtents& face, std::size_t sample) const {
+    return {static_cast<std::uint32_t>(sample),    narrow(face.axis),
+            round_down(unit * face.toward),        round_down(unit * face.away),
+            static_cast<float>(unit * face.along), round_down(unit * face.across)};
   }
   CellBlock block(std::span<const CellPiece> pieces) const {
     std::vector<Sphere> balls;
@@ -335,37 +356,63 @@ struct Placement {
 struct CutCell {
   std::vector<CellBlock> blocks;
   std::vector<CellSample> samples;
+  std::vector<SampleFace> faces;
 };
 
-CutCell cut_cell(std::vector<CellPiece> pieces, const Placement& placement) {
-  std::vector<std::size_t> ends, of_neighbors;
+// Orders the pieces of a block: those beside faces come last, and each run of four lies side by
+// side. The run that has both kinds takes the faces nearest to its balls.
+void order_block(std::span<CellPiece> pieces) {
+  std::vector<std::size_t> runs;
+  const auto beside_faces = std::stable_partition(
+      pieces.begin(), pieces.end(), [](const CellPiece& piece) { return !piece.face; });
+  const auto balls = static_cast<std::size_t>(beside_faces - pieces.begin());
+  group(pieces.first(balls), kNeighborSamples, 0, runs);
+  const std::size_t mixed = std::min(
+      (kNeighborSamples - balls % kNeighborSamples) % kNeighborSamples, pieces.size() - balls);
+  if (mixed > 0) {
+    const Vec3 last = pieces[balls - 1].centroid;
+    std::stable_sort(beside_faces, pieces.end(), [&](const CellPiece& a, const CellPiece& b) {
+      return squared_norm(a.centroid - last) < squared_norm(b.centroid - last);
+    });
+  }
+  group(pieces.subspan(balls + mixed), kNeighborSamples, 0, runs);
+}
+
+CutCell cut_cell(std::vector<CellPiece> pieces, const SolidFaces& faces,
+                 const Placement& placement) {
+  std::vector<std::size_t> ends;
+  for (CellPiece& piece : pieces) placement.find_face(faces, piece);
   group(pieces, kBlockSamples, 0, ends);
   CutCell cell;
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
     const std::span<CellPiece> of_block = std::span(pieces).subspan(begin, end - begin);
-    group(of_block, kNeighborSamples, 0, of_neighbors);
+    order_block(of_block);
     CellBlock block = placement.block(of_block);
     block.begin = static_cast<std::uint32_t>(begin);
     block.end = static_cast<std::uint32_t>(end);
     cell.blocks.push_back(block);
     begin = end;
   }
-  for (const CellPiece& piece : pieces) cell.samples.push_back(placement.sample(piece));
+  for (const CellPiece& piece : pieces) {
+    if (piece.face) cell.faces.push_back(placement.face(*piece.face, cell.samples.size()));
+    cell.samples.push_back(placement.sample(piece));
+  }
   return cell;
 }
 
 }  // namespace
 
-CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, double size, Vec3 origin,
-                   double unit, double volume) {
+CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, const SolidFaces& faces,
+                   double size, Vec3 origin, double unit, double volume) {
   std::vector<CutCell> of_sphere(spheres.size());
   parallel_for(spheres.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::vector<CellPiece> pieces;
       cut_ball(spheres[i].radius, size, pieces);
       cut_gap(cells, i, spheres[i].center, size, pieces);
-      of_sphere[i] = cut_cell(std::move(pieces), {spheres[i].center - origin, unit, volume});
+      of_sphere[i] =
+          cut_cell(std::move(pieces), faces, {origin, spheres[i].center - origin, unit, volume});
     }
   });
   CutCells all;
@@ -378,6 +425,10 @@ CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, double 
       all.blocks.push_back(block);
     }
     all.samples.insert(all.samples.end(), cell.samples.begin(), cell.samples.end());
+    for (SampleFace face : cell.faces) {
+      face.sample += first;
+      all.faces.push_back(face);
+    }
   }
   all.block_begin.push_back(static_cast<std::uint32_t>(all.blocks.size()));
   return all;

@@ -1,9 +1,11 @@
 // Cuts the Voronoi cells of a level into compact samples, grouped into blocks.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "libvpm/graph/solid_faces.h"
 #include "libvpm/graph/voronoi_cells.h"
 #include "libvpm/model/tool_model.h"
 
@@ -15,7 +17,9 @@ struct CellPiece {
   double volume = 0;
   // Radius of the ball with the same second moment.
   double moment_radius = 0;
-  double bounding_radius = 0;  // largest distance of its points from the centroid
+  double bounding_radius = 0;         // largest distance of its points from the centroid
+  Moment moment;                      // second moment about the centroid, per volume
+  std::optional<FaceExtents> face{};  // beside which it lies
 };
 
 // Appends pieces of a ball, about size^3 in volume each; their volumes sum to the ball's and their
@@ -33,11 +37,13 @@ struct CutCells {
   std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;
   std::vector<CellSample> samples;
+  std::vector<SampleFace> faces;
 };
 
-// Cuts all cells, and sorts their segments by piece. Coordinates are stored relative to `origin`,
-// times `unit`; weights relative to `volume`.
-CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, double size, Vec3 origin,
-                   double unit, double volume);
+// Cuts all cells, and sorts their segments by piece. Pieces beside one of the solid's `faces` get
+// its shape. Coordinates are stored relative to `origin`, times `unit`; weights relative to
+// `volume`.
+CutCells cut_cells(std::span<const Sphere> spheres, VoronoiCells& cells, const SolidFaces& faces,
+                   double size, Vec3 origin, double unit, double volume);
 
 }  // namespace vpm

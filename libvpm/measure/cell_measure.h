@@ -130,13 +130,13 @@ class CellMeasure {
       const ToolPiece piece = piece_of_far(far);
       const PieceSample sampled = sample_piece(piece);
       if (!supports(sampled.x, sampled.on_surface.foot)) continue;
-      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_, sum);
+      push(piece, sampled, own_normal(way_out(sampled, false), sampled), surface_, sum);
       unseen.remove_occluded(piece.weight);
     }
   }
   ToolPiece piece_of_far(const PieceIndex& far) const {
     const std::uint32_t k = far.index();
-    return far.is_block() ? piece_of(cell_.masses[k], cell_.blocks[k]) : piece_of(cell_.samples[k]);
+    return far.is_block() ? piece_of(cell_.masses[k], cell_.blocks[k]) : piece_of_sample(k);
   }
 
   // Holds the class of one block of the cell.
@@ -181,7 +181,8 @@ class CellMeasure {
   struct PieceSample {
     Vec3 x;
     SurfaceSample on_surface;
-    bool is_inside = false;  // at least a part of it is
+    PlaneSide side = PlaneSide::before;  // of the surface; before it where none is known
+    bool is_inside = false;              // at least a part of it is
     bool is_far = false;
   };
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
@@ -192,7 +193,12 @@ class CellMeasure {
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
                                const SurfaceSample& on_surface) const {
     PieceSample sampled{x, on_surface};
-    sampled.is_inside = on_surface.known && side_of(piece, on_surface) != PlaneSide::before;
+    if (on_surface.known)
+      sampled.side =
+          piece.shape.face == nullptr
+              ? side_of_plane(on_surface.distance, piece.shape.radius)
+              : side_of_piece(turned(piece.shape), on_surface.distance, on_surface.normal);
+    sampled.is_inside = sampled.side != PlaneSide::before;
     if (!sampled.is_inside) return sampled;
     sampled.is_far = is_far_behind(surface_, x, on_surface.distance, tool_radius_);
     return sampled;
@@ -213,14 +219,11 @@ class CellMeasure {
     else if (!sampled.on_surface.known)
       unseen.add(piece.weight, sight_at(surface_, sampled.x));
   }
-  VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
-    return side_of(piece, sampled.on_surface) == PlaneSide::cut;
-  }
   // Returns along which direction a piece is pushed. Samples share directions, other pieces
   // (is_sample is false) do not.
-  VPM_HD static WayOut way_out(const ToolPiece& piece, const PieceSample& sampled, bool is_sample) {
+  VPM_HD static WayOut way_out(const PieceSample& sampled, bool is_sample) {
     if (!sampled.is_inside) return WayOut::none;
-    if (is_cut(piece, sampled)) return WayOut::sampled;
+    if (sampled.side == PlaneSide::cut) return WayOut::sampled;
     return Surface::kSearchesFoot && is_sample && !sampled.is_far ? WayOut::shared : WayOut::own;
   }
   // Returns that direction for a piece that shares none, for push().
@@ -233,7 +236,7 @@ class CellMeasure {
   template <class Near>
   VPM_HD void push(const ToolPiece& piece, const PieceSample& sampled, Vec3 searched,
                    const Near& near, ToolSum& sum) const {
-    const bool cut = is_cut(piece, sampled);
+    const bool cut = sampled.side == PlaneSide::cut;
     const ToolPiece part = cut ? part_behind(piece, sampled) : piece;
     const Vec3 normal = cut ? sampled.on_surface.normal : searched;
     OtherWall other;
@@ -246,7 +249,11 @@ class CellMeasure {
   }
   // Returns the part of a cut piece behind the surface, with the piece's centroid.
   VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
-    piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.shape);
+    piece.weight *=
+        piece.shape.face == nullptr
+            ? surface_.fraction_inside(sampled.on_surface, sampled.x,
+                                       BallShape<double>{piece.shape.radius})
+            : surface_.fraction_inside(sampled.on_surface, sampled.x, turned(piece.shape));
     return piece;
   }
   VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
@@ -258,9 +265,10 @@ class CellMeasure {
     ClippedMoments part;
     if (piece.begin < piece.end) {
       const ClipPlane border(other.border, to_surface_);
-      part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin);
+      part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin,
+                             cell_.faces);
     } else {
-      part.weight = piece.weight * fraction_behind(PieceShape<double>{piece.extent},
+      part.weight = piece.weight * fraction_behind(BallShape<double>{piece.extent},
                                                    other.border.distance(x), other.border.normal);
       part.moment = part.weight * piece.at;
     }
@@ -278,10 +286,10 @@ class CellMeasure {
   }
 
   // Notes a piece's state in its cell's result. Returns true if run() adds the piece.
-  VPM_HD bool note(const ToolPiece& piece, const PieceSample& sampled, CellResult& result) const {
+  VPM_HD bool note(const PieceSample& sampled, CellResult& result) const {
     if (!sampled.is_inside) return false;
     result.is_far |= sampled.is_far;
-    if (is_cut(piece, sampled)) add_to_plane(sampled, result.plane);
+    if (sampled.side == PlaneSide::cut) add_to_plane(sampled, result.plane);
     return !sampled.is_far;
   }
   // Does so in run(), which lists far pieces and adds what was not seen.
@@ -289,7 +297,7 @@ class CellMeasure {
             CellResult& result) const {
     add_unseen(piece, sampled, result.unseen);
     if (sampled.is_far) far[result.far_count++] = name;
-    return note(piece, sampled, result);
+    return note(sampled, result);
   }
   // Adds one piece to run()'s result.
   void add_piece(const ToolPiece& piece, PieceIndex name, PieceIndex* far,
@@ -297,8 +305,7 @@ class CellMeasure {
     const PieceSample sampled = sample_piece(piece, result.point);
     result.point = sampled.on_surface.point;
     if (note(piece, sampled, name, far, result))
-      push(piece, sampled, own_normal(way_out(piece, sampled, false), sampled), surface_,
-           result.sum);
+      push(piece, sampled, own_normal(way_out(sampled, false), sampled), surface_, result.sum);
   }
   // Holds the direction found for a run of neighbouring samples.
   struct SharedDirection {
@@ -309,13 +316,13 @@ class CellMeasure {
   template <class Near>
   void add_sample(std::uint32_t k, std::uint32_t place, SharedDirection& shared, PieceIndex* far,
                   CellResult& result, const Near& near) const {
-    const ToolPiece piece = piece_of(cell_.samples[k]);
+    const ToolPiece piece = piece_of_sample(k);
     const Vec3 x = to_surface_ * piece.at;
     const PieceSample sampled =
         sample_of(piece, x, sample_for_piece(near, x, piece.extent, result.point));
     result.point = sampled.on_surface.point;
     if (!note(piece, sampled, PieceIndex::sample(k), far, result)) return;
-    const WayOut way = way_out(piece, sampled, true);
+    const WayOut way = way_out(sampled, true);
     if (way == WayOut::shared && shared.neighbors != neighbors_of(place))
       shared = {neighbors_of(place), closest_normal(sampled)};
     push(piece, sampled, way == WayOut::shared ? shared.normal : own_normal(way, sampled), near,
@@ -335,19 +342,21 @@ class CellMeasure {
     const PlaneSide side = side_of_plane(plane.distance(center), block.radius);
     ClippedMoments sums;
     if (side == PlaneSide::cut)
-      sums = clipped(plane, cell_.samples + block.begin, block.end - block.begin);
+      sums = clipped(plane, cell_.samples + block.begin, block.end - block.begin, cell_.faces);
     if (sums.is_cut) add_to_plane(center, plane, result.plane);
     add_by_plane(side, cell_.masses[b], sums, plane.normal, tool_radius_, result.sum);
   }
   VPM_HD const Surface& surface() const { return surface_; }
+  VPM_HD const SampleFaces& faces() const { return cell_.faces; }
+  VPM_HD ToolPiece piece_of_sample(std::uint32_t k) const {
+    return piece_of(cell_.samples[k], cell_.faces);
+  }
   VPM_HD const Pose& to_surface() const { return to_surface_; }
   VPM_HD const ToolRadius& tool_radius() const { return tool_radius_; }
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:
-  VPM_HD static PlaneSide side_of(const ToolPiece& piece, const SurfaceSample& on_surface) {
-    return side_of_plane(on_surface.distance, piece.shape.reach_toward(on_surface.normal));
-  }
+  VPM_HD TurnedShape turned(const PieceShape& shape) const { return {shape, to_surface_.rotation}; }
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
     return tool_radius_.inverse * about_center_of_mass;
   }
@@ -377,8 +386,8 @@ struct SamplesInTurn {
     measure.add_far(pieces, supports, sum, unseen);
   }
   static VPM_HD ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
-                                       std::uint32_t count) {
-    return clipped_in_turn(plane, samples, count);
+                                       std::uint32_t count, const SampleFaces& faces) {
+    return clipped_in_turn(plane, samples, count, faces);
   }
 };
 

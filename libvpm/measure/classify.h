@@ -42,16 +42,6 @@ VPM_HD constexpr bool may_be_planar(double cluster_radius, double tool_radius) {
   return cluster_radius <= kPlanarReach * tool_radius;
 }
 
-// Tells the side of a plane on which a body lies.
-enum class PlaneSide : std::uint8_t { before, cut, behind };
-// Returns the side of a body whose middle is at this signed distance and that reaches so far toward
-// the plane. A body that only touches the plane is not cut.
-VPM_HD constexpr PlaneSide side_of_plane(double distance, double reach) {
-  return distance >= reach    ? PlaneSide::before
-         : distance <= -reach ? PlaneSide::behind
-                              : PlaneSide::cut;
-}
-
 // Tells how the surface meets a cluster of cells, or a part of one.
 enum class ClusterClass : std::uint8_t {
   free,         // outside of the solid: counts for nothing

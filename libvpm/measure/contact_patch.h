@@ -44,8 +44,8 @@ struct CellSectionOf {
 
   // Adds a sample with its middle at `center`, about the tool's centre of mass; returns whether a
   // part of it is behind the plane.
-  [[gnu::always_inline]] VPM_HD MaskOf<Real> add(const PieceShape<Real>& shape,
-                                                 const PlaceOf<Real>& center,
+  template <class Shape>
+  [[gnu::always_inline]] VPM_HD MaskOf<Real> add(const Shape& shape, const PlaceOf<Real>& center,
                                                  const Real& sample_weight,
                                                  const ClipPlane& plane) {
     const Real distance = dot(plane.normal, center) + plane.height;

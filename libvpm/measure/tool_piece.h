@@ -91,6 +91,33 @@ struct BlockMass {
   double weight = 0;  // sum of the samples' weights, in parts of the tool's volume
 };
 
+// Finds the shapes of samples in rows. In a level that is ready for queries (numbered_samples),
+// such a sample has -1 - k for its radius, where k is the number of its lane among those of all
+// rows. So a query tells balls by a number that it reads.
+struct SampleFaces {
+  const FaceRow* rows = nullptr;
+
+  // Returns the shape of a sample; a null pointer for a ball.
+  VPM_HD FaceInRow of(const CellSample& sample) const {
+    return sample.radius < 0 ? row_of(sample).numbers + number_of(sample) % FaceRow::kLanes
+                             : nullptr;
+  }
+  // Returns the row of a sample that is in one.
+  VPM_HD const FaceRow& row_of(const CellSample& sample) const {
+    return rows[number_of(sample) / FaceRow::kLanes];
+  }
+
+ private:
+  VPM_HD static std::uint32_t number_of(const CellSample& sample) {
+    return static_cast<std::uint32_t>(-1 - sample.radius);
+  }
+};
+// True if some of a block's samples, or of a part of them, are in rows: these are the last ones of
+// their block, so that all others are asked at once.
+VPM_HD inline bool have_faces(const CellSample* samples, std::size_t count) {
+  return count > 0 && samples[count - 1].radius < 0;
+}
+
 struct CellView {
   const CellBlock* blocks = nullptr;
   const BlockMass* masses = nullptr;
@@ -98,22 +125,29 @@ struct CellView {
   std::uint32_t begin = 0, end = 0;  // blocks of the cell
   Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
   double radius = 0;                 // bounding radius of the cell about `center`, m
+  SampleFaces faces;                 // of the level
 };
 
 // Describes a compact piece of a cell: a sample, or a block or cell that is taken whole, as if all
 // of it were at its centroid.
 struct ToolPiece {
   Vec3 at;                           // centroid, about the tool's centre of mass, m
-  PieceShape<double> shape{};        // without extent for a block or cell
+  PieceShape shape{};                // without extent for a block or cell
   double weight = 0;                 // volume, in parts of the tool's
   double extent = 0;                 // bounding radius about the centroid, nearly, m
   std::uint32_t begin = 0, end = 0;  // samples of a block or cell taken whole
 };
-VPM_HD inline PieceShape<double> shape_of(const CellSample& sample) {
-  return {sample.radius};
+
+VPM_HD inline PieceShape shape_of(const CellSample& sample, const SampleFaces& faces) {
+  const FaceInRow face = faces.of(sample);
+  return {face == nullptr ? sample.radius : number_of(face, FaceRow::farthest), face};
 }
-VPM_HD inline ToolPiece piece_of(const CellSample& sample) {
-  return {widen(sample.center), shape_of(sample), sample.weight, sample.radius, 0, 0};
+VPM_HD inline ToolPiece piece_of(const CellSample& sample, const SampleFaces& faces) {
+  const PieceShape shape = shape_of(sample, faces);
+  return {widen(sample.center), shape, sample.weight, shape.radius, 0, 0};
+}
+VPM_HD inline ToolPiece piece_of_ball(const CellSample& sample) {
+  return {widen(sample.center), {sample.radius, nullptr}, sample.weight, sample.radius, 0, 0};
 }
 VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellBlock& block) {
   return {mass.centroid, {}, mass.weight, block.radius, block.begin, block.end};
@@ -160,29 +194,29 @@ template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,
                                                         Mask& is_cut) {
-  const Real reach = shape.reach_toward(normal);
-  const Mask reached = distance < reach;
-  is_cut = reached & (distance > -reach);
+  const Mask reached = distance < shape.reach_toward(normal);
+  is_cut = reached & (distance > -shape.reach_away(normal));
   const Real part = weight * shape.fraction_of_cut(distance, normal);
   return reached ? (is_cut ? part : weight) : Real{};
 }
-// Adds the part of a sample behind a plane to its row. Adds zeros too, so that no row is ever -0.
-VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, ClippedMoments& row,
-                              bool& is_cut) {
+// Adds the part of a sample of this shape behind a plane to its row. Adds zeros too, so that no row
+// is ever -0.
+template <class Shape>
+VPM_HD inline void add_to_row(const Shape& shape, const CellSample& sample, const ClipPlane& plane,
+                              ClippedMoments& row, bool& is_cut) {
   bool cut = false;
-  const double inside =
-      weight_behind(shape_of(sample), plane.normal, plane.distance(widen(sample.center)),
-                    double{sample.weight}, cut);
+  const double inside = weight_behind(shape, plane.normal, plane.distance(widen(sample.center)),
+                                      double{sample.weight}, cut);
   is_cut |= cut;
   row.weight += inside;
   row.moment += inside * widen(sample.center);
 }
 // Returns the clipped moments of samples, one after another.
 VPM_HD inline ClippedMoments clipped_in_turn(const ClipPlane& plane, const CellSample* samples,
-                                             std::uint32_t count) {
+                                             std::uint32_t count, const SampleFaces& faces) {
   ClippedMoments rows[kSumRows];
   for (std::uint32_t k = 0; k < count; ++k)
-    add_to_row(samples[k], plane, rows[k % kSumRows], rows[0].is_cut);
+    add_to_row(shape_of(samples[k], faces), samples[k], plane, rows[k % kSumRows], rows[0].is_cut);
   for (std::uint32_t half = kSumRows / 2; half > 0; half /= 2) {
     for (std::uint32_t r = 0; r < half; ++r) {
       rows[r].weight += rows[r + half].weight;

@@ -12,7 +12,7 @@ constexpr file::ChunkId kTool("TOOL"), kSpheres("SPHR"), kLevels("LEVL");
 constexpr file::ChunkId kEdgeBegin("EDGB"), kNeighbors("EDGN"), kNodes("NODE"), kLeaves("LEAF");
 constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
 constexpr file::ChunkId kCellVolume("SHRV"), kCellCentroid("SHRC"), kCellReach("SHRR");
-constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
+constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL"), kFaces("SMPF");
 constexpr file::ChunkId kCalibration("CALB");
 constexpr file::ChunkId kSurfaceVertices("SRFV"), kSurfaceTriangles("SRFT");
 constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
@@ -31,8 +31,9 @@ struct LevelRecord {
 };
 static_assert(sizeof(ToolRecord) == 40 && sizeof(LevelRecord) == 64 &&
                   sizeof(HierarchyNode) == 48 && sizeof(CellBlock) == 24 &&
-                  sizeof(CellSample) == 24 && sizeof(Sphere) == 32 && sizeof(Vec3) == 24 &&
-                  sizeof(LevelError) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12,
+                  sizeof(CellSample) == 24 && sizeof(SampleFace) == 32 && sizeof(Sphere) == 32 &&
+                  sizeof(Vec3) == 24 && sizeof(LevelError) == 24 && sizeof(Vec3f) == 12 &&
+                  sizeof(Triangle) == 12,
               "chunks hold these types as they lie in memory");
 
 LevelRecord record_of(const Level& level) {
@@ -62,6 +63,7 @@ Level level_of(const LevelRecord& record, const file::Reader& reader, std::uint3
   level.block_begin = reader.read<std::uint32_t>(kBlockBegin, k);
   level.blocks = reader.read<CellBlock>(kBlocks, k);
   level.samples = reader.read<CellSample>(kSamples, k);
+  if (reader.has(kFaces, k)) level.faces = reader.read<SampleFace>(kFaces, k);
   return level;
 }
 
@@ -78,6 +80,7 @@ void add_level(file::Writer& writer, const Level& level, std::uint32_t k) {
   writer.add(kBlockBegin, k, std::span(level.block_begin));
   writer.add(kBlocks, k, std::span(level.blocks));
   writer.add(kSamples, k, std::span(level.samples));
+  if (!level.faces.empty()) writer.add(kFaces, k, std::span(level.faces));
 }
 
 ToolModel model_of(const file::Reader& reader) {

@@ -64,6 +64,24 @@ struct CellSample {
   double weight = 0;  // volume of the piece / volume of the solid
 };
 
+// Shape of a sample that lies nearer to a face of the solid than its radius, so that the ball would
+// stick out: two halves of ellipsoids about an axis, which meet at the sample's centre. It is right
+// to second order like the ball, and stays within the solid. Lengths in metres.
+struct SampleFace {
+  std::uint32_t sample = 0;  // index
+  Vec3f axis;                // unit vector from the centre to the nearest place of the surface
+  float toward = 0;          // extent along the axis, at most `along`
+  float away = 0;            // extent against it, at most `along`
+  float along = 0;           // radius of the ball with the piece's variance along the axis
+  float across = 0;          // extent across the axis
+};
+// Returns the largest variance along its axis, m^2, that such a shape may have: with more, its
+// density would be negative in the middle.
+inline double most_variance_at_face(double toward, double away) {
+  const double near = toward < away ? toward : away, far = toward < away ? away : toward;
+  return near * (near / 2 < far / 3 ? near / 2 : far / 3);
+}
+
 struct Level {
   double epsilon = 0;  // largest gap along an edge that is not a bridge, m
   std::uint32_t bridges = 0, components_before = 0;
@@ -80,6 +98,7 @@ struct Level {
   std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;
   std::vector<CellSample> samples;  // weights sum to 1
+  std::vector<SampleFace> faces;    // ascending by sample; samples without one are balls
 };
 
 // Distribution of |volume - truth| / volume of the solid over cuts by planes and balls at all

@@ -26,6 +26,13 @@ constexpr double kFarthestPart = 2;
 constexpr double kFarthestOfCell = 7;
 // Number of samples per cell up to which a query's counts are exact.
 constexpr std::size_t kMaxSamplesOfACell = std::size_t{1} << 20;
+// Largest extent of a sample at a face, in its radii: that of a flat one across its axis is the
+// root of 3/2, of a long one along it the root of 3.
+constexpr double kFarthestOfFace = 2;
+// Tolerance for what float32 rounds of a unit vector and of extents.
+constexpr double kUnitTolerance = 1e-5;
+// A query numbers the lanes of rows of four, of which one is at a face, by float32.
+constexpr std::size_t kMostFaces = std::size_t{1} << 22;
 // Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
 // needs 32.
 constexpr std::uint32_t kDeepestHierarchy = 1000;
@@ -44,6 +51,7 @@ class LevelCheck {
     grid();
     cell_sum();
     samples();
+    faces();
     sums();
   }
 
@@ -178,6 +186,43 @@ class LevelCheck {
       if (!is_finite(sample.center) || !(sample.radius >= 0) || !std::isfinite(sample.radius) ||
           !(sample.weight >= 0) || !std::isfinite(sample.weight))
         fail("sample " + std::to_string(i) + " is negative or not finite");
+    }
+  }
+
+  // Checks that the shapes of samples at faces are shapes: no part of them counts less than
+  // nothing, and none reaches much further than the ball.
+  void faces() const {
+    std::uint64_t next = 0;
+    for (const SampleFace& face : level_.faces) {
+      const auto fail_face = [&](const std::string& defect) {
+        fail("the face of sample " + std::to_string(face.sample) + " " + defect);
+      };
+      if (face.sample < next || face.sample >= level_.samples.size())
+        fail_face("is out of order or range");
+      next = std::uint64_t{face.sample} + 1;
+      const double toward = face.toward, away = face.away, along = face.along, across = face.across,
+                   most = kFarthestOfFace * double{level_.samples[face.sample].radius};
+      if (!(std::abs(squared_norm(widen(face.axis)) - 1) <= kUnitTolerance))
+        fail_face("has an axis that is no unit vector");
+      if (!(std::min(toward, away) > 0 && std::max(toward, away) <= along && along <= most &&
+            across >= 0 && across <= most))
+        fail_face("has extents out of range");
+      if (!(along * along <= (1 + kUnitTolerance) * most_variance_at_face(toward, away) * 5))
+        fail_face("has a larger variance than its extents allow");
+    }
+    check_order_of_faces();
+    if (level_.faces.size() > kMostFaces) fail("it has more than 2^22 samples at faces");
+  }
+
+  // Checks that the samples at faces are the last ones of their blocks: a query asks the last one.
+  void check_order_of_faces() const {
+    auto face = level_.faces.begin();
+    for (const CellBlock& block : level_.blocks) {
+      const auto first = face;
+      while (face != level_.faces.end() && face->sample < block.end) ++face;
+      if (face != first && block.end - first->sample != face - first)
+        fail("sample " + std::to_string(first->sample) +
+             " is at a face, and a later one of its block is at none");
     }
   }
 

@@ -172,7 +172,7 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSam
   { body.may_be_flat(in_ball) } -> std::same_as<bool>;
   { body.mean_plane(in_ball, x, length, length, SampleInTurn{}, plane) } -> std::same_as<bool>;
   { body.is_flat(in_ball, read, length, plane) } -> std::same_as<bool>;
-  { body.fraction_inside(on_surface, x, PieceShape<double>{}) } -> std::same_as<double>;
+  { body.fraction_inside(on_surface, x, PieceShape{}) } -> std::same_as<double>;
   body.around_ball(x, length, kNoPoint);
   { B::kTellsInside } -> std::convertible_to<bool>;
   { B::kSearchesFoot } -> std::convertible_to<bool>;

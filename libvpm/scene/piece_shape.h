@@ -1,11 +1,16 @@
-// Defines the shape that stands for a compact piece of the tool: how far it reaches toward a plane,
-// and which fraction of it a plane leaves behind. The rest of the measure and the bodies of the
-// scene ask these two functions and do not know which shape that is. Contacts also ask where the
-// plane cuts it, and how much of it lies how far behind.
+// Defines the shapes that stand for a compact piece of the tool: how far one reaches toward a
+// plane, and which fraction of it a plane leaves behind. The rest of the measure and the bodies of
+// the scene ask these two functions and do not know which shape that is. Contacts also ask where
+// the plane cuts it, and how much of it lies how far behind.
 #pragma once
+
+#include <cstdint>
 
 #include "libvpm/core/division.h"
 #include "libvpm/core/host_device.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/core/vector_width.h"
+#include "libvpm/model/tool_model.h"
 
 namespace vpm {
 
@@ -19,6 +24,11 @@ struct BallShape {
   // Returns the extent of the piece from its middle toward a plane with this normal, m.
   template <class Normal>
   [[gnu::always_inline]] VPM_HD constexpr Real reach_toward(const Normal& /*normal*/) const {
+    return radius;
+  }
+  // Returns its extent the other way, m.
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD constexpr Real reach_away(const Normal& /*normal*/) const {
     return radius;
   }
   // Returns the fraction of the piece behind a plane that cuts it at this signed distance, m.
@@ -45,18 +55,215 @@ struct BallShape {
     return 3 * radius * section * section / 16;
   }
 };
-// The shape of all pieces: to try another one, name it here.
+
+// Replaces a piece beside a face of the solid (SampleFace) by one that ends there, so that nothing
+// is behind a plane before the solid is: balls would stick out of the face, all to the same side.
+// Seen along a normal it is a density over its extent, a polynomial of the second degree with the
+// piece's volume, centroid and second moment: at a right angle to a face a layer that ends at once,
+// across it the ball's. Extents and second moment are those of two halves of ellipsoids, so both
+// follow the normal without a bend. Normals are in the tool's axes.
 template <class Real>
-using PieceShape = BallShape<Real>;
+struct FaceShape {
+  PlaceOf<Real> axis;
+  Real across;               // square of the extent across the axis, m^2
+  Real toward, away, along;  // by how much those of SampleFace along it are larger, m^2
+
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real reach_toward(const Normal& normal) const {
+    const Real cosine = dot(normal, axis);
+    return extent(cosine, cosine < Real{} ? toward : away);
+  }
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real reach_away(const Normal& normal) const {
+    const Real cosine = dot(normal, axis);
+    return extent(cosine, cosine < Real{} ? away : toward);
+  }
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real fraction_of_cut(const Real& distance,
+                                                     const Normal& normal) const {
+    return density_along(normal).fraction(distance);
+  }
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real section_of_cut(const Real& distance,
+                                                    const Normal& normal) const {
+    return density_along(normal).section(distance);
+  }
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Real moment_of_cut(const Real& distance,
+                                                   const Normal& normal) const {
+    return density_along(normal).moment(distance);
+  }
+
+ private:
+  // A density of volume 1 over [-1, 1], (1 + 2 tilt s + bend (3 s^2 - 1)) / 2, stretched to the
+  // piece's extent; distances are those of planes above the piece's middle.
+  struct Density {
+    Real middle, width;  // twice the height of the extent's middle, and the extent, m
+    Real per_width, tilt, bend;
+
+    [[gnu::always_inline]] VPM_HD Real place(const Real& distance) const {
+      return (2 * distance - middle) * per_width;
+    }
+    [[gnu::always_inline]] VPM_HD Real fraction(const Real& distance) const {
+      const Real s = place(distance);
+      return 0.5 * (1 - s) * (1 + (1 + s) * (tilt + bend * s));
+    }
+    [[gnu::always_inline]] VPM_HD Real section(const Real& distance) const {
+      const Real s = place(distance);
+      return per_width * (1 + 2 * tilt * s + bend * (3 * s * s - 1));
+    }
+    [[gnu::always_inline]] VPM_HD Real moment(const Real& distance) const {
+      const Real s = place(distance), square = s * s, rest = 1 - square;
+      return 0.5 *
+             (middle * fraction(distance) +
+              width * (rest * (2 + bend * (1 + 3 * square)) / 8 + tilt * (1 - s * square) / 3));
+    }
+  };
+  template <class Normal>
+  [[gnu::always_inline]] VPM_HD Density density_along(const Normal& normal) const {
+    const Real cosine = dot(normal, axis), five_variances = across + cosine * cosine * along;
+    const Real below = reach_toward(normal), above = reach_away(normal);
+    const Real middle = below - above, width = below + above, per_width = quotient(1, width);
+    return {middle, width, per_width, -1.5 * middle * per_width,
+            (3 * five_variances + 3.75 * middle * middle) * per_width * per_width - 1.25};
+  }
+  [[gnu::always_inline]] VPM_HD Real extent(const Real& cosine, const Real& larger) const {
+    const Real square = across + cosine * cosine * larger;
+    return square_root(square > Real{} ? square : Real{});
+  }
+};
+
+// Holds four neighbouring samples beside faces as vectors load them: their centres, the numbers of
+// their shapes, and how far each reaches from its middle at most, m. A lane past the last sample
+// holds zeros, and a ball the shape whose extents are all its radius.
+struct alignas(16) FaceRow {
+  enum Number { x, y, z, axis_x, axis_y, axis_z, across, toward, away, along, farthest, kNumbers };
+  static constexpr std::uint32_t kLanes = kNeighborSamples;
+
+  // Keeps `farthest` a bound, though axes are units and squares are rounded to floats only.
+  static constexpr float kMargin = 1 + 2e-5F;
+
+  double weights[kLanes] = {};
+  float numbers[kNumbers * kLanes] = {};  // number n of lane k at n kLanes + k
+
+  // Sets a lane to a sample and its face; its `sample` is not asked.
+  void set(std::uint32_t lane, const CellSample& sample, const SampleFace& face) {
+    const auto squared = [](float a) { return double{a} * double{a}; };
+    const double beside = squared(face.across);
+    const auto larger = [&](float a) { return static_cast<float>(squared(a) - beside); };
+    const float all[] = {sample.center.x,
+                         sample.center.y,
+                         sample.center.z,
+                         face.axis.x,
+                         face.axis.y,
+                         face.axis.z,
+                         static_cast<float>(beside),
+                         larger(face.toward),
+                         larger(face.away),
+                         larger(face.along),
+                         kMargin * (face.along > face.across ? face.along : face.across)};
+    static_assert(sizeof(all) == kNumbers * sizeof(float));
+    for (std::uint32_t n = 0; n < kNumbers; ++n) numbers[n * kLanes + lane] = all[n];
+    weights[lane] = sample.weight;
+  }
+};
+// Points to the numbers of one sample in a FaceRow, which lie FaceRow::kLanes apart.
+using FaceInRow = const float*;
+VPM_HD inline double number_of(FaceInRow face, FaceRow::Number number) {
+  return double{face[number * FaceRow::kLanes]};
+}
+// Returns the shape whose numbers `number` returns.
+template <class Real, class Number>
+[[gnu::always_inline]] VPM_HD inline FaceShape<Real> face_shape(const Number& number) {
+  return {{number(FaceRow::axis_x), number(FaceRow::axis_y), number(FaceRow::axis_z)},
+          number(FaceRow::across),
+          number(FaceRow::toward),
+          number(FaceRow::away),
+          number(FaceRow::along)};
+}
+VPM_HD inline FaceShape<double> shape_of(FaceInRow face) {
+  return face_shape<double>([face](FaceRow::Number number) { return number_of(face, number); });
+}
+
+// The shape of a piece: a ball, or that of a sample beside a face. Normals are in the tool's axes.
+struct PieceShape {
+  double radius = 0;         // of the ball, m
+  FaceInRow face = nullptr;  // of a sample beside one
+
+  VPM_HD double reach_toward(const Vec3& normal) const {
+    return face == nullptr ? radius : shape_of(face).reach_toward(normal);
+  }
+  VPM_HD double reach_away(const Vec3& normal) const {
+    return face == nullptr ? radius : shape_of(face).reach_away(normal);
+  }
+  VPM_HD double fraction_of_cut(double distance, const Vec3& normal) const {
+    return face == nullptr ? BallShape<double>{radius}.fraction_of_cut(distance, normal)
+                           : shape_of(face).fraction_of_cut(distance, normal);
+  }
+  VPM_HD double section_of_cut(double distance, const Vec3& normal) const {
+    return face == nullptr ? BallShape<double>{radius}.section_of_cut(distance, normal)
+                           : shape_of(face).section_of_cut(distance, normal);
+  }
+  VPM_HD double moment_of_cut(double distance, const Vec3& normal) const {
+    return face == nullptr ? BallShape<double>{radius}.moment_of_cut(distance, normal)
+                           : shape_of(face).moment_of_cut(distance, normal);
+  }
+};
+// The same for normals in a frame that the tool's axes are turned to.
+struct TurnedShape {
+  PieceShape shape;
+  const Rotation& to_frame;
+
+  VPM_HD double reach_toward(const Vec3& normal) const {
+    return shape.reach_toward(in_tool(normal));
+  }
+  VPM_HD double reach_away(const Vec3& normal) const { return shape.reach_away(in_tool(normal)); }
+  VPM_HD double fraction_of_cut(double distance, const Vec3& normal) const {
+    return shape.fraction_of_cut(distance, in_tool(normal));
+  }
+
+ private:
+  VPM_HD Vec3 in_tool(const Vec3& normal) const {
+    return shape.face == nullptr ? normal : transpose(to_frame) * normal;
+  }
+};
+
+// Tells the side of a plane on which a body lies.
+enum class PlaneSide : std::uint8_t { before, cut, behind };
+// Returns the side of a body whose middle is at this signed distance and that reaches so far toward
+// the plane, and as far the other way. A body that only touches the plane is not cut.
+VPM_HD constexpr PlaneSide side_of_plane(double distance, double reach) {
+  return distance >= reach    ? PlaneSide::before
+         : distance <= -reach ? PlaneSide::behind
+                              : PlaneSide::cut;
+}
+// Returns the side of a piece whose middle is at this signed distance from a plane.
+template <class Shape>
+VPM_HD PlaneSide side_of_piece(const Shape& shape, double distance, const Vec3& normal) {
+  return distance >= shape.reach_toward(normal)  ? PlaneSide::before
+         : distance <= -shape.reach_away(normal) ? PlaneSide::behind
+                                                 : PlaneSide::cut;
+}
 
 // Returns the fraction of a piece behind a plane with this normal at this signed distance, m, from
 // the piece's middle: 0 where the plane has all of it before it, 1 where it has all of it behind.
-template <class Shape, class Normal>
-VPM_HD double fraction_behind(const Shape& shape, double distance, const Normal& normal) {
-  const double reach = shape.reach_toward(normal);
-  if (distance >= reach) return 0;
-  if (distance <= -reach) return 1;
-  return shape.fraction_of_cut(distance, normal);
+template <class Shape>
+VPM_HD double fraction_behind(const Shape& shape, double distance, const Vec3& normal) {
+  const PlaneSide side = side_of_piece(shape, distance, normal);
+  return side == PlaneSide::before   ? 0
+         : side == PlaneSide::behind ? 1
+                                     : shape.fraction_of_cut(distance, normal);
+}
+
+// The same of a piece beside a face, apart: most pieces are balls, and these wait for no more
+// instructions, on a device for no more registers.
+[[gnu::noinline]] VPM_HD inline PlaneSide side_of_piece(const TurnedShape& shape, double distance,
+                                                        const Vec3& normal) {
+  return side_of_piece<TurnedShape>(shape, distance, normal);
+}
+[[gnu::noinline]] VPM_HD inline double fraction_behind(const TurnedShape& shape, double distance,
+                                                       const Vec3& normal) {
+  return fraction_behind<TurnedShape>(shape, distance, normal);
 }
 
 }  // namespace vpm

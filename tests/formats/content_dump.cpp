@@ -31,6 +31,11 @@ json of(const CellSample& s) {
   return {{"center", of(s.center)}, {"radius", double{s.radius}}, {"weight", s.weight}};
 }
 
+json of(const SampleFace& f) {
+  return {{"sample", f.sample},     {"axis", of(f.axis)},       {"toward", double{f.toward}},
+          {"away", double{f.away}}, {"along", double{f.along}}, {"across", double{f.across}}};
+}
+
 json of(const LevelError& e) {
   return {{"mean", e.mean}, {"p95", e.p95}, {"worst", e.worst}};
 }
@@ -46,7 +51,7 @@ json list(const std::vector<T>& values) {
 
 json of(const Level& level) {
   const PointLocationGrid& grid = level.grid;
-  return {
+  json all{
       {"epsilon", level.epsilon},
       {"bridges", level.bridges},
       {"components_before", level.components_before},
@@ -65,6 +70,8 @@ json of(const Level& level) {
       {"block_begin", level.block_begin},
       {"blocks", list(level.blocks)},
       {"samples", list(level.samples)}};
+  if (!level.faces.empty()) all["faces"] = list(level.faces);
+  return all;
 }
 
 }  // namespace

@@ -126,6 +126,15 @@ ToolModel cube_model_with_surface() {
   return model;
 }
 
+ToolModel cube_model_with_faces() {
+  ToolModel model = cube_model();
+  const float along = static_cast<float>(2 * kQuarter * std::sqrt(5.0 / 12)), half = kQuarter;
+  for (std::uint32_t i = 0; i < 8; ++i)
+    model.levels[1].faces.push_back(
+        {i, {(i & 1) != 0 ? 1.0F : -1.0F, 0, 0}, half, along, along, half});
+  return model;
+}
+
 Cloud wall_cloud() {
   CloudSensor sensor;
   sensor.camera.intrinsics = {4, 4, 1.5, 1};

@@ -44,6 +44,9 @@ TEST(Golden, CalibratedToolModel) {
 TEST(Golden, ToolModelWithSurface) {
   expect_golden("surface.vpmg", read_tool_model, write_model, cube_model_with_surface());
 }
+TEST(Golden, ToolModelWithFaces) {
+  expect_golden("faces.vpmg", read_tool_model, write_model, cube_model_with_faces());
+}
 TEST(Golden, CloudWithSensor) {
   expect_golden("wall.vpmc", read_cloud, write_cloud, wall_cloud());
 }

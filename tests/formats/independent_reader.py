@@ -48,7 +48,7 @@ def read_packing(header, chunks):
 
 def read_level(record, chunks, k):
     epsilon, x, y, z, cell, nx, ny, nz, bridges, components, count = record
-    return {
+    level = {
         "epsilon": epsilon, "bridges": bridges, "components_before": components,
         "sphere_count": count,
         "graph": {"begin": flat(chunks["EDGB", k], "I"),
@@ -68,6 +68,11 @@ def read_level(record, chunks, k):
                    for b in records(chunks["BLCK", k], "4f2I")],
         "samples": [{"center": s[:3], "radius": s[3], "weight": s[4]}
                     for s in records(chunks["SMPL", k], "4fd")]}
+    if ("SMPF", k) in chunks:
+        level["faces"] = [{"sample": f[0], "axis": f[1:4], "toward": f[4], "away": f[5],
+                           "along": f[6], "across": f[7]}
+                          for f in records(chunks["SMPF", k], "I7f")]
+    return level
 
 
 def read_tool_model(header, chunks):

@@ -46,6 +46,7 @@ void write_refused(const fs::path& golden, const fs::path& folder) {
                              file::read_all((golden / "cube.vpmg").string()),
                              file::read_all((golden / "calibrated.vpmg").string()),
                              file::read_all((golden / "surface.vpmg").string()),
+                             file::read_all((golden / "faces.vpmg").string()),
                              file::read_all((golden / "wall.vpmc").string()))) {
     file::write_all((folder / file.name).string(), std::span<const std::byte>(file.bytes));
     manifest.push_back(
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
     write_pair(golden / "cube.vpmg", golden::cube_model(), write_model);
     write_pair(golden / "calibrated.vpmg", golden::calibrated_cube_model(), write_model);
     write_pair(golden / "surface.vpmg", golden::cube_model_with_surface(), write_model);
+    write_pair(golden / "faces.vpmg", golden::cube_model_with_faces(), write_model);
     write_pair(golden / "wall.vpmc", golden::wall_cloud(), write_cloud);
     write_pair(golden / "scattered.vpmc", golden::scattered_cloud(), write_cloud);
     write_refused(golden, refused);

@@ -235,6 +235,22 @@ void add_surfaces(std::vector<RefusedFile>& all, const std::vector<std::byte>& g
   add("surface_of_another", "times the tool's volume", Spoiled(good).set("SRFV", 0, 0, -0.09));
 }
 
+void add_faces(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
+  const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
+    all.push_back({std::string(name) + ".vpmg", Kind::tool_model, message, spoiled.bytes()});
+  };
+  add("face_of_no_sample", "face of sample 8 is out of",
+      Spoiled(good).set("SMPF", 1, 7 * 32, std::uint32_t{8}));
+  add("face_twice", "face of sample 1 is out of order",
+      Spoiled(good).set("SMPF", 1, 2 * 32, std::uint32_t{1}));
+  add("face_axis_long", "no unit vector", Spoiled(good).set("SMPF", 1, 4, 1.1F));
+  add("face_extent_zero", "extents out of range", Spoiled(good).set("SMPF", 1, 16, 0.0F));
+  add("face_extent_not_finite", "extents out of range",
+      Spoiled(good).set("SMPF", 1, 28, static_cast<float>(kNan)));
+  add("face_too_wide", "extents out of range", Spoiled(good).set("SMPF", 1, 28, 0.2F));
+  add("face_too_thin", "larger variance", Spoiled(good).set("SMPF", 1, 16, 0.01F));
+}
+
 void add_clouds(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
   const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
     all.push_back({std::string(name) + ".vpmc", Kind::cloud, message, spoiled.bytes()});
@@ -261,6 +277,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
                                        const std::vector<std::byte>& calibrated_model,
                                        const std::vector<std::byte>& model_with_surface,
+                                       const std::vector<std::byte>& model_with_faces,
                                        const std::vector<std::byte>& cloud) {
   std::vector<RefusedFile> all;
   add_containers(all, packing);
@@ -270,6 +287,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
   add_models(all, model);
   add_calibrations(all, calibrated_model);
   add_surfaces(all, model_with_surface);
+  add_faces(all, model_with_faces);
   add_clouds(all, cloud);
   return all;
 }

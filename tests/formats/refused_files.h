@@ -24,6 +24,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
                                        const std::vector<std::byte>& calibrated_model,
                                        const std::vector<std::byte>& model_with_surface,
+                                       const std::vector<std::byte>& model_with_faces,
                                        const std::vector<std::byte>& cloud);
 
 }  // namespace vpm::golden

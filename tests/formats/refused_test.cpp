@@ -93,6 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Golden, DamagedFile,
                          testing::Values(GoldenFile{"cube.vpmp", "packing"},
                                          GoldenFile{"cube.vpmg", "tool model"},
                                          GoldenFile{"surface.vpmg", "tool model"},
+                                         GoldenFile{"faces.vpmg", "tool model"},
                                          GoldenFile{"wall.vpmc", "cloud"},
                                          GoldenFile{"scattered.vpmc", "cloud"}),
                          [](const auto& instance) { return test::test_name(instance.param.name); });

@@ -52,6 +52,9 @@ ToolModel scaled(ToolModel m, double by) {
       s.center = narrow(by * widen(s.center));
       s.radius *= narrow_by;
     }
+    for (SampleFace& face : level.faces)
+      for (float* const extent : {&face.toward, &face.away, &face.along, &face.across})
+        *extent *= narrow_by;
   }
   return m;
 }

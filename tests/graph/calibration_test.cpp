@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
+#include "libvpm/measure/tool_piece.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/piece_shape.h"
 #include "tests/graph/test_packing.h"
 
 namespace vpm {
@@ -53,9 +54,10 @@ TEST(Calibration, HoldsForOtherCuts) {
       const Vec3 normal = numbers.direction();
       const double offset = numbers.uniform(-0.9, 0.9) * made.model.radius;
       double sum = 0;
-      for (const CellSample& s : made.model.levels[k].samples) {
+      const NumberedSamples numbered = numbered_samples(made.model.levels[k]);
+      for (const CellSample& s : numbered.samples) {
         const double height = dot(normal, widen(s.center)) - offset;
-        sum += s.weight * fraction_behind(BallShape<double>{s.radius}, height, normal);
+        sum += s.weight * fraction_behind(shape_of(s, numbered.faces()), height, normal);
       }
       const double truth = test::volume_below(made.packing.solid, normal,
                                               offset + dot(normal, made.model.center_of_mass)) /

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "tests/measure/analytic_bodies.h"
 #include "tests/query/lattice_model.h"
@@ -23,13 +24,14 @@ static_assert(!SeesFreeSpace<DiskSurface> && !BoundsGap<DiskSurface>);
 
 constexpr double kEdge = 0.2;
 
-// Returns the part of the tool's samples, taken as balls, at distances below 0.
-template <class Distance>
-double part_behind(const ToolModel& tool, const Pose& pose, const Distance& distance) {
+// Returns the part of the tool's samples below a plane.
+double part_behind(const ToolModel& tool, const Pose& pose, const TangentPlane& plane) {
   double part = 0;
-  for (const CellSample& sample : tool.levels[0].samples) {
+  const NumberedSamples numbered = numbered_samples(tool.levels[0]);
+  for (const CellSample& sample : numbered.samples) {
     const Vec3 at = pose * (tool.center_of_mass + widen(sample.center));
-    part += sample.weight * fraction_behind(BallShape<double>{sample.radius}, distance(at), Vec3{});
+    const TurnedShape shape{shape_of(sample, numbered.faces()), pose.rotation};
+    part += sample.weight * fraction_behind(shape, plane.distance(at), plane.normal);
   }
   return part;
 }
@@ -56,7 +58,7 @@ TEST(AnyBody, AHalfSpaceHoldsWhatOfTheToolIsBelowIt) {
       const HalfSpace body = below({0.2, -0.3, 0.9}, height);
       const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.03}};
       const Result result = answer(body, pose);
-      const double expected = part_behind(tool, pose, [&](Vec3 x) { return body.top.distance(x); });
+      const double expected = part_behind(tool, pose, body.top);
       // Where the plane cuts nothing, points alone cannot tell that the tool is inside.
       if (result.boundary == 0) continue;
       EXPECT_NEAR(result.volume_fraction, expected, 1e-12) << height;
@@ -76,7 +78,7 @@ TEST(AnyBody, OneThatTellsInsideNeedsNoFlood) {
       const auto body = testing::seen_below({0.2, -0.3, 0.9}, height);
       const Result result = answer(body, pose);
       if (result.boundary == 0) continue;
-      const double expected = part_behind(tool, pose, [&](Vec3 x) { return body.top.distance(x); });
+      const double expected = part_behind(tool, pose, body.top);
       EXPECT_NEAR(result.volume_fraction, expected, 1e-12) << height;
     }
   }

@@ -75,10 +75,10 @@ void expect_ways(WayOut of_sample) {
   const CellMeasure<Body> measure(body, Pose{}, ToolRadius(0.1, Shadows::near), CellView{});
   CellSample sample;
   sample.radius = 0.01F;
-  const ToolPiece piece = piece_of(sample);
+  const ToolPiece piece = piece_of(sample, {});
   const auto way = [&](double distance, bool is_sample) {
     const SurfaceSample on_surface{true, distance, {0, 0, 1}, {}};
-    return measure.way_out(piece, measure.sample_of(piece, {}, on_surface), is_sample);
+    return measure.way_out(measure.sample_of(piece, {}, on_surface), is_sample);
   };
   for (const bool is_sample : {false, true}) {
     EXPECT_EQ(way(0.02, is_sample), WayOut::none);
@@ -88,7 +88,7 @@ void expect_ways(WayOut of_sample) {
   }
   EXPECT_EQ(way(-0.05, false), WayOut::own);
   EXPECT_EQ(way(-0.05, true), of_sample);
-  EXPECT_EQ(measure.way_out(piece, measure.sample_of(piece, {}, {}), true), WayOut::none);
+  EXPECT_EQ(measure.way_out(measure.sample_of(piece, {}, {}), true), WayOut::none);
 }
 TEST(WayOut, IsSharedBySamplesOfABodyThatSearches) {
   expect_ways<DepthSurface>(WayOut::shared);

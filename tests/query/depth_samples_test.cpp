@@ -29,6 +29,21 @@ class Numbers {
   std::mt19937 random_{1};
 };
 
+// Makes a level's samples one block, gives the last ones a face, and returns them as queries ask
+// them.
+NumberedSamples with_faces(Numbers& numbers, Level& level) {
+  const auto count = static_cast<std::uint32_t>(level.samples.size());
+  level.blocks = {{{}, 0, 0, count}};
+  for (auto k = static_cast<std::uint32_t>(numbers.between(0, 1.3) * count); k < count; ++k) {
+    float& radius = level.samples[k].radius;
+    radius = std::max(radius, 0.001F);
+    const auto part = [&] { return radius * static_cast<float>(numbers.between(0.6, 1)); };
+    const Vec3 axis = normalized_or_zero(numbers.place(1));
+    level.faces.push_back({k, narrow(axis), part(), part(), radius, part()});
+  }
+  return numbered_samples(level);
+}
+
 // Returns a cloud with creases, jumps, noise and holes.
 Cloud rough_cloud(const char* scene) {
   auto [camera, image] = testing::small_noisy_image(scene);
@@ -132,18 +147,24 @@ TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceMayReach) {
   int reached = 0, of_no_size = 0;
   for (int k = 0; k < 2000; ++k) {
     const Pose to_surface{testing::generic_rotation(), any_place(numbers_)};
-    std::vector<CellSample> samples(static_cast<std::size_t>(numbers_.between(0, 40)));
-    for (CellSample& sample : samples) {
+    Level level;
+    level.samples.resize(static_cast<std::size_t>(numbers_.between(0, 40)));
+    for (CellSample& sample : level.samples) {
       const double radius = std::max(0.0, numbers_.between(-0.005, 0.02));
       sample = {narrow(numbers_.place(0.05)), static_cast<float>(radius), 1};
     }
+    const auto& [samples, rows] = with_faces(numbers_, level);
+    const SampleFaces faces{rows.data()};
     std::vector<SurfaceOfSample> together(samples.size());
-    together.resize(sample_surface(surface_, to_surface, samples, HUGE_VAL, together.data()));
+    together.resize(
+        sample_surface(surface_, to_surface, samples, faces, HUGE_VAL, together.data()));
     std::size_t found = 0;
     for (std::uint32_t s = 0; s < samples.size(); ++s) {
       const Vec3 x = to_surface * widen(samples[s].center);
       const SurfaceSample on_surface = surface_.sample(x);
-      if (on_surface.known && !(on_surface.distance < samples[s].radius)) continue;
+      const TurnedShape shape{shape_of(samples[s], faces), to_surface.rotation};
+      if (on_surface.known && !(on_surface.distance < shape.reach_toward(on_surface.normal)))
+        continue;
       ASSERT_LT(found, together.size());
       EXPECT_EQ(together[found].sample, s);
       expect_same(together[found].at.x, x);
@@ -200,6 +221,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 5);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
+  const NumberedSamples numbered = numbered_samples(level);
   std::vector<PieceIndex> far_pieces(level.samples.size() + level.blocks.size()),
       of_together = far_pieces;
   int cut = 0, pushed = 0, far = 0;  // samples of blocks that are neither flat nor on one side
@@ -210,8 +232,9 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
-          CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
-                   level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_radius[i]});
+          CellView{level.blocks.data(), masses.data(), numbered.samples.data(),
+                   level.block_begin[i], level.block_begin[i + 2], tool.spheres[i].center,
+                   2 * level.cell_radius[i], numbered.faces()});
       const CellResult result = measure.run(SamplesInTurn{}, far_pieces.data());
       expect_same(result, measure.run(SamplesTogether{}, of_together.data()));
       expect_same_far_pieces(measure, {far_pieces.data(), result.far_count},
@@ -220,10 +243,9 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
       const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
-        const ToolPiece piece = piece_of(level.samples[s]);
-        const auto in_ball = measure.sample_piece(piece);
+        const auto in_ball = measure.sample_piece(measure.piece_of_sample(s));
         if (!in_ball.is_inside) continue;
-        ++(in_ball.is_far ? far : measure.is_cut(piece, in_ball) ? cut : pushed);
+        ++(in_ball.is_far ? far : in_ball.side == PlaneSide::cut ? cut : pushed);
       }
     }
   }
@@ -242,6 +264,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 4);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
+  const NumberedSamples numbered = numbered_samples(level);
   std::vector<PieceIndex> far(level.samples.size() + level.blocks.size());
   double volume = 0;
   Vec3 together, alone;
@@ -251,19 +274,20 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
     for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
-          CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
-                   level.block_begin[i + 1], tool.spheres[i].center, level.cell_radius[i]});
+          CellView{level.blocks.data(), masses.data(), numbered.samples.data(),
+                   level.block_begin[i], level.block_begin[i + 1], tool.spheres[i].center,
+                   level.cell_radius[i], numbered.faces()});
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       CellResult of_each;
       bool any_far = false;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
-        const ToolPiece piece = piece_of(level.samples[s]);
+        const ToolPiece piece = measure.piece_of_sample(s);
         const auto in_ball = measure.sample_piece(piece);
         any_far |= in_ball.is_inside && in_ball.is_far;
         if (!in_ball.is_inside) continue;
-        const WayOut way = measure.way_out(piece, in_ball, false);
+        const WayOut way = measure.way_out(in_ball, false);
         measure.push(piece, in_ball, measure.own_normal(way, in_ball), measure.surface(),
                      of_each.sum);
       }
@@ -340,21 +364,24 @@ TEST(ClippedSamples, AddUpTogetherAsInTurn) {
     ClipPlane plane;
     plane.normal = normalized_or_zero(numbers.place(1));
     plane.height = numbers.between(-0.12, 0.12);
-    std::vector<CellSample> samples(static_cast<std::size_t>(numbers.between(0, 40)));
-    for (CellSample& sample : samples) {
+    Level level;
+    level.samples.resize(static_cast<std::size_t>(numbers.between(0, 40)));
+    for (CellSample& sample : level.samples) {
       const double radius = std::max(0.0, numbers.between(-0.01, 0.03));
       sample = {narrow(numbers.place(0.1)), static_cast<float>(radius), numbers.between(0, 1)};
     }
-    if (k % 4 == 0 && !samples.empty()) {  // through a centre, or touching, exactly
-      const CellSample& sample = samples.front();
+    if (k % 4 == 0 && !level.samples.empty()) {  // through a centre, or touching, exactly
+      const CellSample& sample = level.samples.front();
       plane.normal = {1, 0, 0};
       const int side = k % 12 / 4 - 1;
       plane.height = side * double{sample.radius} - double{sample.center.x};
       touched += std::abs(plane.distance(widen(sample.center))) == sample.radius ? 1 : 0;
     }
+    const auto& [samples, rows] = with_faces(numbers, level);
+    const SampleFaces faces{rows.data()};
     const auto count = static_cast<std::uint32_t>(samples.size());
-    const ClippedMoments together = clipped_moments(plane, samples.data(), count),
-                         in_turn = SamplesInTurn::clipped(plane, samples.data(), count);
+    const ClippedMoments together = clipped_moments(plane, samples.data(), count, faces),
+                         in_turn = SamplesInTurn::clipped(plane, samples.data(), count, faces);
     expect_same(together.weight, in_turn.weight);
     expect_same(together.moment, in_turn.moment);
     EXPECT_EQ(together.is_cut, in_turn.is_cut);
@@ -364,7 +391,7 @@ TEST(ClippedSamples, AddUpTogetherAsInTurn) {
     for (const CellSample& sample : samples) {
       bool cuts = false;
       const double inside =
-          weight_behind(shape_of(sample), plane.normal, plane.distance(widen(sample.center)),
+          weight_behind(shape_of(sample, faces), plane.normal, plane.distance(widen(sample.center)),
                         double{sample.weight}, cuts);
       is_cut |= cuts;
       weight += inside;

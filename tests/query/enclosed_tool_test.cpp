@@ -56,6 +56,16 @@ std::vector<ScannedSolid> scanned_solids() {
   return solids;
 }
 
+// All of its faces are flush with the scan's.
+TEST(EnclosedTool, CountsWholeInAScanOfItself) {
+  Cloud cloud;
+  const double half = kCubeInScan / 2;
+  add_box({}, {half, half, half}, 1, kScanStep / 5, cloud);
+  const ToolModel tool = testing::lattice_cube(kCubeInScan, 5, 3);
+  const Result r = ToolQuery(tool, {}).run(AnyBody{PointsBody(cloud)}, Pose{});
+  EXPECT_NEAR(r.volume_fraction, 1, 1e-6);
+}
+
 // Wholly inside, outside, or cut by the surface, a tool has the volume that is inside.
 TEST(EnclosedTool, HasTheVolumeThatIsInside) {
   const ToolModel tool = testing::lattice_cube(kCubeInScan, 5, 3);

@@ -197,6 +197,11 @@ TEST(ExtremeTools, SumsBeyondTheirLimitAreRefused) {
   expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_volume[1] *= 1.1; }), "cells sum");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].center.x = 10; }), "sample 5");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].radius = 10; }), "sample 5");
+  const auto with_a_face_first = [](ToolModel&, Level& l) {
+    const float r = l.samples[0].radius;
+    l.faces = {{0, {1, 0, 0}, r, r, r, r}};
+  };
+  expect_refused(spoiled(with_a_face_first), "sample 0 is at a face, and a later one");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.blocks[2].center.y = -9; }), "block 2");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_radius[7] = 0; }), "no radius");
   expect_refused(spoiled([](ToolModel& t, Level&) { t.radius = 0; }), "2^-100 m");

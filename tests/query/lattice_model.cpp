@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/synthetic/render.h"
@@ -43,6 +45,22 @@ void wrap(std::uint32_t count, double radius, Hierarchy& hierarchy) {
   }
 }
 
+// Returns the shape of a sample that is a small cube with this edge at the place `at`, counted from
+// a corner of a large cube of `count` samples per edge; none in the large cube's inside.
+std::optional<SampleFace> face_of(Vec3 at, double count, double edge) {
+  const auto outward = [&](double k) { return k == 0 ? -1.0 : k == count - 1 ? 1.0 : 0.0; };
+  const Vec3 out{outward(at.x), outward(at.y), outward(at.z)};
+  if (out == Vec3{}) return std::nullopt;
+  const Vec3 axis = out.x != 0   ? Vec3{out.x, 0, 0}
+                    : out.y != 0 ? Vec3{0, out.y, 0}
+                                 : Vec3{0, 0, out.z};
+  const bool is_at_edge = squared_norm(out) > 1;
+  const auto half = static_cast<float>(edge / 2),
+             along = static_cast<float>(std::sqrt(5.0 / 12) * edge);
+  return SampleFace{
+      0, narrow(axis), half, count == 1 ? half : along, along, is_at_edge ? half : along};
+}
+
 }  // namespace
 
 ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
@@ -67,14 +85,24 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
     level.cell_centroid.push_back(center);
     level.cell_radius.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
     const std::uint32_t begin = static_cast<std::uint32_t>(level.samples.size());
+    std::vector<std::pair<CellSample, std::optional<SampleFace>>> pieces;
     for (std::uint32_t s = 0; s < m * m * m; ++s) {
       const std::uint32_t part_row = s / m % m, part_layer = s / (m * m);
       const Vec3 at{double(s % m), double(part_row), double(part_layer)};
       const Vec3 sample =
           center + piece * (at + Vec3{0.5, 0.5, 0.5}) - Vec3{share / 2, share / 2, share / 2};
       const double mean_squared_distance = piece * piece / 4;
-      level.samples.push_back(
-          {narrow(sample), static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)), weight});
+      pieces.push_back(
+          {{narrow(sample), static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)), weight},
+           face_of(m * cell + at, n * m, piece)});
+    }
+    std::stable_partition(pieces.begin(), pieces.end(), [](const auto& p) { return !p.second; });
+    for (auto& [sample, face] : pieces) {
+      if (face) {
+        face->sample = static_cast<std::uint32_t>(level.samples.size());
+        level.faces.push_back(*face);
+      }
+      level.samples.push_back(sample);
     }
     level.blocks.push_back({narrow(center), static_cast<float>(level.cell_radius.back()), begin,
                             static_cast<std::uint32_t>(level.samples.size())});

@@ -127,6 +127,23 @@ TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   EXPECT_EQ(norm(r.wrench.force), 0);
 }
 
+// A thousandth of its radius before the wall nothing counts, so far behind it something does: by a
+// face and by a corner first.
+TEST(RefinedMeasure, CountsFromTheFirstContactOn) {
+  const AnyBody wall(see(synthetic::make_scene("wall")));  // at a depth of 1 m
+  const ToolModel tool = lattice_cube(kCubeEdge, 6, 2);
+  ToolQuery query(tool, {});
+  for (const Rotation& turned : {Rotation{}, generic_rotation()}) {
+    const Vec3 toward = turned.row2;
+    const double reach =
+        kCubeEdge / 2 * (std::abs(toward.x) + std::abs(toward.y) + std::abs(toward.z));
+    for (const double beyond : {-1e-3, 0.03}) {
+      const Result r = query.run(wall, {turned, {0, 0, 1 - reach + beyond * tool.radius}});
+      EXPECT_EQ(r.volume > 0, beyond > 0) << reach;
+    }
+  }
+}
+
 TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   // The tool is before, beside and far from a free-standing block, also where the block hides the
   // wall behind it.

@@ -182,6 +182,9 @@ ToolModel scaled(ToolModel tool, double s) {
     for (double& radius : level.cell_radius) radius *= s;
     for (CellBlock& block : level.blocks) stretch(block.center), block.radius *= f;
     for (CellSample& sample : level.samples) stretch(sample.center), sample.radius *= f;
+    for (SampleFace& face : level.faces)
+      for (float* const extent : {&face.toward, &face.away, &face.along, &face.across})
+        *extent *= f;
   }
   return tool;
 }

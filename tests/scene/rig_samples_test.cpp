@@ -29,7 +29,7 @@ struct Told {
 void expect_samples_of_each(const RigSurface::View& view, std::span<const CellSample> samples,
                             double deepest, Told& told) {
   std::vector<SurfaceOfSample> reached(samples.size());
-  const std::uint32_t wanted = sample_surface(view, Pose{}, samples, deepest, reached.data());
+  const std::uint32_t wanted = sample_surface(view, Pose{}, samples, {}, deepest, reached.data());
   std::uint32_t next = 0;
   for (std::uint32_t k = 0; k < samples.size(); ++k) {
     const double radius = samples[k].radius;

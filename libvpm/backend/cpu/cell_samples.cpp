@@ -1,6 +1,7 @@
 #include "libvpm/backend/cpu/cell_samples.h"
 
 #include <iterator>
+#include <type_traits>
 
 #include "libvpm/core/lanes.h"
 #include "libvpm/core/vec3x4.h"
@@ -49,25 +50,56 @@ template <class Surface>
   for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
 }
 
-template <class Surface>
+// Calls use(center, weight, shape, farthest) for four samples of a block, from `first` on: with
+// their shape, and how far it reaches at most, m. Only samples that `have_faces` may be in rows.
+// Lanes past the last sample have no weight if they are in a row, else what that sample has.
+template <bool kHaveFaces, class Use>
+[[gnu::always_inline]] inline void with_four(std::span<const CellSample> samples,
+                                             std::uint32_t first, const SampleFaces& faces,
+                                             const Use& use) {
+  static_assert(FaceRow::kLanes == kFour);
+  if constexpr (kHaveFaces) {
+    if (samples[first].radius < 0) {
+      const FaceRow& row = faces.row_of(samples[first]);
+      const auto lanes = [&](FaceRow::Number number) __attribute__((always_inline)) {
+        return widen(load<Float4>(row.numbers + number * kFour));
+      };
+      return use(Vec3x4(lanes(FaceRow::x), lanes(FaceRow::y), lanes(FaceRow::z)),
+                 load<Double4>(row.weights), face_shape<Double4>(lanes), lanes(FaceRow::farthest));
+    }
+  }
+  const auto [a, b, c, d] = four_of(samples, first);
+  const BallShape<Double4> ball{widen(Float4{a.radius, b.radius, c.radius, d.radius})};
+  use(Vec3x4(a.center, b.center, c.center, d.center),
+      Double4{a.weight, b.weight, c.weight, d.weight}, ball, ball.radius);
+}
+
+template <class Shape>
+constexpr bool kIsBall = std::is_same_v<std::remove_cvref_t<Shape>, BallShape<Double4>>;
+
+template <bool kHaveFaces, class Surface>
 [[gnu::always_inline]] inline std::uint32_t sample_lanes(const Surface& surface,
                                                          const Pose& to_surface,
                                                          std::span<const CellSample> samples,
-                                                         double deepest,
+                                                         const SampleFaces& faces, double deepest,
                                                          SurfaceOfSample* on_surface_at) {
   const auto count = static_cast<std::uint32_t>(samples.size());
   std::uint32_t found = 0;
   for (std::uint32_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(samples, first);
-    const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
-    const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const FourSamples four = sample_at(surface, x, radius, deepest);  // no piece reaches further
-    const Mask4 wanted = negated(four.known) |
-                         (four.distance < PieceShape<Double4>{radius}.reach_toward(four.normal));
-    if (!any(wanted)) continue;
-    for (int k = 0; k < kFour && first + k < count; ++k) {
-      if (wanted[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
-    }
+    with_four<kHaveFaces>(
+        samples, first, faces,
+        [&](const Vec3x4& center, const Double4&, const auto& shape,
+            const Double4& farthest) __attribute__((always_inline)) {
+          const Vec3x4 x = to_surface * center;
+          const FourSamples four = sample_at(surface, x, farthest, deepest);
+          const Vec3x4 normal =
+              kIsBall<decltype(shape)> ? four.normal : transpose(to_surface.rotation) * four.normal;
+          const Mask4 wanted = negated(four.known) | (four.distance < shape.reach_toward(normal));
+          if (!any(wanted)) return;
+          for (int k = 0; k < kFour && first + k < count; ++k) {
+            if (wanted[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
+          }
+        });
   }
   return found;
 }
@@ -116,6 +148,34 @@ struct FourRows {
   return (rows[0] + rows[2]) + (rows[1] + rows[3]);
 }
 
+template <bool kHaveFaces>
+[[gnu::always_inline]] inline ClippedMoments clipped_lanes(const ClipPlane& plane,
+                                                           std::span<const CellSample> samples,
+                                                           const SampleFaces& faces) {
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  FourRows rows[kSumRows / kFour];
+  Mask4 any_cut{};
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    with_four<kHaveFaces>(
+        samples, first, faces,
+        [&](const Vec3x4& center, const Double4& weight, const auto& shape, const Double4& farthest)
+            __attribute__((always_inline)) {
+              const Double4 distance = dot(plane.normal, center) + plane.height;
+              if (!any(distance < farthest)) return;
+              Mask4 is_cut{};
+              Double4 inside = weight_behind(shape, plane.normal, distance, weight, is_cut);
+              any_cut |= is_cut;
+              if (kIsBall<decltype(shape)>)
+                for (std::uint32_t k = count - first; k < kFour; ++k) inside[k] = 0;
+              FourRows& row = rows[first / kFour % std::size(rows)];
+              row = row + FourRows{inside, inside * center};
+            });
+  }
+  static_assert(std::size(rows) == 4);
+  const FourRows all = (rows[0] + rows[2]) + (rows[1] + rows[3]);
+  return {sum(all.weight), {sum(all.moment.x), sum(all.moment.y), sum(all.moment.z)}, any(any_cut)};
+}
+
 }  // namespace
 
 VPM_VECTOR_CLONES
@@ -135,15 +195,19 @@ void sample_four(const RigSurface& surface, const Vec3 (&places)[4],
 
 VPM_VECTOR_CLONES
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, double deepest,
-                             SurfaceOfSample* on_surface_at) {
-  return sample_lanes(surface, to_surface, samples, deepest, on_surface_at);
+                             std::span<const CellSample> samples, const SampleFaces& faces,
+                             double deepest, SurfaceOfSample* on_surface_at) {
+  return have_faces(samples.data(), samples.size())
+             ? sample_lanes<true>(surface, to_surface, samples, faces, deepest, on_surface_at)
+             : sample_lanes<false>(surface, to_surface, samples, faces, deepest, on_surface_at);
 }
 VPM_AVX2_CLONES
 std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, double deepest,
-                             SurfaceOfSample* on_surface_at) {
-  return sample_lanes(surface, to_surface, samples, deepest, on_surface_at);
+                             std::span<const CellSample> samples, const SampleFaces& faces,
+                             double deepest, SurfaceOfSample* on_surface_at) {
+  return have_faces(samples.data(), samples.size())
+             ? sample_lanes<true>(surface, to_surface, samples, faces, deepest, on_surface_at)
+             : sample_lanes<false>(surface, to_surface, samples, faces, deepest, on_surface_at);
 }
 
 VPM_VECTOR_CLONES
@@ -176,44 +240,41 @@ void closest_normals(const RigSurface& surface, std::span<const PlaceSample> pla
       });
 }
 
+namespace {
+
 VPM_VECTOR_CLONES
+ClippedMoments clipped_balls(const ClipPlane& plane, std::span<const CellSample> samples) {
+  return clipped_lanes<false>(plane, samples, {});
+}
+VPM_VECTOR_CLONES
+ClippedMoments clipped_beside_faces(const ClipPlane& plane, std::span<const CellSample> samples,
+                                    const SampleFaces& faces) {
+  return clipped_lanes<true>(plane, samples, faces);
+}
+
+}  // namespace
+
 ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
-                               std::uint32_t count) {
-  FourRows rows[kSumRows / kFour];
-  Mask4 any_cut{};
-  for (std::uint32_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(std::span(samples, count), first);
-    const Vec3x4 center(a.center, b.center, c.center, d.center);
-    const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
-    const Double4 weight{a.weight, b.weight, c.weight, d.weight};
-    const Double4 distance = dot(plane.normal, center) + plane.height;
-    const PieceShape<Double4> shape{radius};
-    if (!any(distance < shape.reach_toward(plane.normal))) continue;
-    Mask4 is_cut{};
-    Double4 inside = weight_behind(shape, plane.normal, distance, weight, is_cut);
-    any_cut |= is_cut;
-    for (std::uint32_t k = count - first; k < kFour; ++k) inside[k] = 0;
-    FourRows& row = rows[first / kFour % std::size(rows)];
-    row = row + FourRows{inside, inside * center};
-  }
-  static_assert(std::size(rows) == 4);
-  const FourRows all = (rows[0] + rows[2]) + (rows[1] + rows[3]);
-  return {sum(all.weight), {sum(all.moment.x), sum(all.moment.y), sum(all.moment.z)}, any(any_cut)};
+                               std::uint32_t count, const SampleFaces& faces) {
+  return have_faces(samples, count) ? clipped_beside_faces(plane, {samples, count}, faces)
+                                    : clipped_balls(plane, {samples, count});
 }
 
 VPM_VECTOR_CLONES
 std::uint32_t add_section(const ClipPlane& plane, std::span<const CellSample> samples,
-                          CellSection& cell) {
+                          const SampleFaces& faces, CellSection& cell) {
   const auto count = static_cast<std::uint32_t>(samples.size());
   CellSectionOf<Double4> lanes;
   std::uint32_t bits = 0;
   for (std::uint32_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(samples, first);
-    const Vec3x4 center(a.center, b.center, c.center, d.center);
-    const PieceShape<Double4> shape{widen(Float4{a.radius, b.radius, c.radius, d.radius})};
-    Double4 weight{a.weight, b.weight, c.weight, d.weight};
-    for (std::uint32_t k = count - first; k < kFour; ++k) weight[k] = 0;
-    const Mask4 is_behind = lanes.add(shape, center, weight, plane);
+    Mask4 is_behind;
+    with_four<true>(
+        samples, first, faces,
+        [&](const Vec3x4& center, Double4 weight, const auto& shape, const Double4&)
+            __attribute__((always_inline)) {
+              for (std::uint32_t k = count - first; k < kFour; ++k) weight[k] = 0;
+              is_behind = lanes.add(shape, center, weight, plane);
+            });
     for (std::uint32_t k = 0; k < kFour; ++k) bits |= (is_behind[k] != 0 ? 1U : 0U) << (first + k);
   }
   cell.weight += sum(lanes.weight);

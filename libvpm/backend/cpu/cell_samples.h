@@ -34,16 +34,15 @@ void sample_four(const RigSurface& surface, const Vec3 (&places)[4],
 void sample_four(const RigSurface::View& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]);
 
-// Samples the surface for those tool samples that it reaches, whose distance is less than their
-// radius, and those where none is known. Writes them in order to `on_surface_at` and returns their
-// number. Of samples wholly behind the surface, by less than `deepest`, m, it may tell only that:
-// any such distance, and neither normal nor foot.
+// Samples the surface for those tool samples that reach it, and those where none is known. Writes
+// them in order to `on_surface_at` and returns their number. Of samples wholly behind the surface,
+// by less than `deepest`, m, it may tell only that: any such distance, and neither normal nor foot.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, double deepest,
-                             SurfaceOfSample* on_surface_at);
+                             std::span<const CellSample> samples, const SampleFaces& faces,
+                             double deepest, SurfaceOfSample* on_surface_at);
 std::uint32_t sample_surface(const RigSurface::View& surface, const Pose& to_surface,
-                             std::span<const CellSample> samples, double deepest,
-                             SurfaceOfSample* on_surface_at);
+                             std::span<const CellSample> samples, const SampleFaces& faces,
+                             double deepest, SurfaceOfSample* on_surface_at);
 
 // Writes closest_normal() of each sampled place.
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
@@ -52,12 +51,12 @@ void closest_normals(const RigSurface& surface, std::span<const PlaceSample> pla
 
 // Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
-                               std::uint32_t count);
+                               std::uint32_t count, const SampleFaces& faces);
 
 // Adds samples, kAtOnce at most, to what a plane leaves behind of their cell. Returns a bit for
 // each of which a part is behind.
 std::uint32_t add_section(const ClipPlane& plane, std::span<const CellSample> samples,
-                          CellSection& cell);
+                          const SampleFaces& faces, CellSection& cell);
 
 // Adds those parts of the tool that are free and were not seen at their centroids.
 void add_unseen(const DepthSurface& surface, const Pose& to_surface, const FreeParts& parts,
@@ -193,16 +192,10 @@ class SamplesTogether {
   template <class Measure, class Near>
   void add(const Measure& measure, const SampleRange& range, const Near& surface, PieceIndex* far,
            CellResult& result) {
-    neighbors_ = kNone;  // a new block begins
-    for (std::uint32_t first = range.begin; first < range.end; first += kAtOnce) {
-      const std::uint32_t some = std::min(range.end - first, kAtOnce);
-      const std::uint32_t found =
-          sample_surface(surface, measure.to_surface(), {range.all + first, some},
-                         measure.tool_radius().supported_beyond, on_surface_at_);
-      for (std::uint32_t k = 0; k < found; ++k)
-        add_one(measure, range, first + on_surface_at_[k].sample, on_surface_at_[k].at, far,
-                result);
-    }
+    if (have_faces(range.all + range.begin, range.end - range.begin))
+      add_block_with_faces(measure, range, surface, far, result);
+    else
+      add_block<false>(measure, range, surface, far, result);
   }
   // Finds the directions that were put off, together, and adds their samples.
   template <class Measure>
@@ -213,7 +206,8 @@ class SamplesTogether {
     static_assert(!HasOtherWalls<DepthSurface> &&
                   !HasOtherWalls<RigSurface>);  // push() divides none
     for (std::uint32_t k = 0; k < pushed_count_; ++k) {
-      measure.add_pushed(piece_of(*pushed_[k].sample), normals[pushed_[k].direction], result.sum);
+      measure.add_pushed(measure.piece_of_sample(pushed_[k].sample), normals[pushed_[k].direction],
+                         result.sum);
     }
     direction_count_ = pushed_count_ = 0;
   }
@@ -225,13 +219,35 @@ class SamplesTogether {
   }
 
  private:
-  template <class Measure>
+  template <bool kHaveFaces, class Measure, class Near>
+  void add_block(const Measure& measure, const SampleRange& range, const Near& surface,
+                 PieceIndex* far, CellResult& result) {
+    neighbors_ = kNone;
+    for (std::uint32_t first = range.begin; first < range.end; first += kAtOnce) {
+      const std::uint32_t some = std::min(range.end - first, kAtOnce);
+      const std::uint32_t found =
+          sample_surface(surface, measure.to_surface(), {range.all + first, some}, measure.faces(),
+                         measure.tool_radius().supported_beyond, on_surface_at_);
+      for (std::uint32_t k = 0; k < found; ++k)
+        add_one<kHaveFaces>(measure, range, first + on_surface_at_[k].sample, on_surface_at_[k].at,
+                            far, result);
+    }
+  }
+  // Stands apart, so that blocks of balls have its instructions in no one's way.
+  template <class Measure, class Near>
+  [[gnu::noinline]] void add_block_with_faces(const Measure& measure, const SampleRange& range,
+                                              const Near& surface, PieceIndex* far,
+                                              CellResult& result) {
+    add_block<true>(measure, range, surface, far, result);
+  }
+  template <bool kHaveFaces, class Measure>
   void add_one(const Measure& measure, const SampleRange& range, std::uint32_t k,
                const PlaceSample& at, PieceIndex* far, CellResult& result) {
-    const ToolPiece piece = piece_of(range.all[k]);
+    // A block of balls asks none for its shape again.
+    const ToolPiece piece = kHaveFaces ? measure.piece_of_sample(k) : piece_of_ball(range.all[k]);
     const typename Measure::PieceSample sampled = measure.sample_of(piece, at.x, at.on_surface);
     if (!measure.note(piece, sampled, PieceIndex::sample(k), far, result)) return;
-    if (Measure::way_out(piece, sampled, true) != WayOut::shared) {
+    if (Measure::way_out(sampled, true) != WayOut::shared) {
       measure.push(piece, sampled, {}, measure.surface(), result.sum);
       return;
     }
@@ -240,12 +256,12 @@ class SamplesTogether {
       if (direction_count_ == kAtOnce) flush(measure, result);
       searched_[direction_count_++] = at;
     }
-    pushed_[pushed_count_++] = {range.all + k, direction_count_ - 1};
+    pushed_[pushed_count_++] = {k, direction_count_ - 1};
   }
 
   static constexpr std::uint32_t kNone = UINT32_MAX;
   struct Pushed {
-    const CellSample* sample;
+    std::uint32_t sample;     // index
     std::uint32_t direction;  // index into searched_
   };
 

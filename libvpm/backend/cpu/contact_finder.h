@@ -92,7 +92,7 @@ class ContactFinder {
       }
       for (std::uint32_t first = block.begin; first < block.end; first += kAtOnce) {
         const std::uint32_t some = std::min(block.end - first, kAtOnce);
-        std::uint32_t bits = add_section(plane, {view.samples + first, some}, behind);
+        std::uint32_t bits = add_section(plane, {view.samples + first, some}, view.faces, behind);
         for (; bits != 0; bits &= bits - 1)
           regions_.mark(places_->of_sample(first + std::countr_zero(bits)));
       }

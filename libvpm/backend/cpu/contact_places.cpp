@@ -12,7 +12,7 @@ LevelPlaces::LevelPlaces(const SpatialLevel& level, double tool_radius)
     for (std::uint32_t b = cell.begin; b < cell.end; ++b) {  // all in their order
       const auto first = static_cast<std::ptrdiff_t>(of_samples_.size());
       for (std::uint32_t k = cell.blocks[b].begin; k < cell.blocks[b].end; ++k)
-        add_sample(cell.samples[k]);
+        add_sample(piece_of(cell.samples[k], cell.faces));
       of_block.assign(of_samples_.begin() + first, of_samples_.end());
       std::sort(of_block.begin(), of_block.end());
       const auto end = std::unique(of_block.begin(), of_block.end());
@@ -42,10 +42,10 @@ ContactPlace LevelPlaces::at(Vec3 place) const {
   return number_of(cube_index(edges.x), cube_index(edges.y), cube_index(edges.z));
 }
 
-void LevelPlaces::add_sample(const CellSample& sample) {
-  const Vec3 center = 1 / edge_ * widen(sample.center);
-  const double radius = sample.radius / edge_;
-  of_samples_.push_back(at(widen(sample.center)));
+void LevelPlaces::add_sample(const ToolPiece& sample) {
+  const Vec3 center = 1 / edge_ * sample.at;
+  const double radius = sample.extent / edge_;
+  of_samples_.push_back(at(sample.at));
   const auto for_cubes = [&](double x, const auto& visit) {
     for (int k = cube_index(x - radius); k <= cube_index(x + radius); ++k)
       visit(k, k + 0.5 - kPlacesPerEdge / 2);

@@ -39,7 +39,7 @@ class LevelPlaces {
   }
 
  private:
-  void add_sample(const CellSample& sample);
+  void add_sample(const ToolPiece& sample);
 
   double edge_;  // m
   std::vector<ContactPlace> of_samples_, of_blocks_;

@@ -26,11 +26,13 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
   add_groups(tool, level);
   add_group_nodes(tool, level, 0, static_cast<std::uint32_t>(groups_.size()));
   const std::vector<BlockMass> block_masses = vpm::block_masses(level);
+  NumberedSamples numbered = numbered_samples(level);
+  face_rows_ = std::move(numbered.rows);
   for (const std::uint32_t sphere : spheres_) {
     masses_.push_back(clusters.masses[sphere]);
     block_masses_.insert(block_masses_.end(), block_masses.begin() + level.block_begin[sphere],
                          block_masses.begin() + level.block_begin[sphere + 1]);
-    add_cell(tool, level, sphere);
+    add_cell(tool, level, numbered.samples, sphere);
   }
   add_parts(tool.radius);
   add_graph(level.graph);
@@ -88,14 +90,14 @@ void SpatialLevel::add_group_nodes(const ToolModel& tool, const Level& level, st
   group_tree_[node].next = static_cast<std::uint32_t>(group_tree_.size());
 }
 
-void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
+void SpatialLevel::add_cell(const ToolModel& tool, const Level& level,
+                            std::span<const CellSample> samples, std::uint32_t sphere) {
   Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_radius[sphere],
             static_cast<std::uint32_t>(blocks_.size()), 0};
   for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
     CellBlock block = level.blocks[b];
     const auto begin = static_cast<std::uint32_t>(samples_.size());
-    samples_.insert(samples_.end(), level.samples.begin() + block.begin,
-                    level.samples.begin() + block.end);
+    samples_.insert(samples_.end(), samples.begin() + block.begin, samples.begin() + block.end);
     block.begin = begin;
     block.end = static_cast<std::uint32_t>(samples_.size());
     blocks_.push_back(block);

@@ -50,7 +50,7 @@ class SpatialLevel {
   CellView cell(std::uint32_t row) const {
     const Cell& row_cell = cells_[row];
     return {blocks_.data(), block_masses_.data(), samples_.data(), row_cell.begin,
-            row_cell.end,   row_cell.center,      row_cell.radius};
+            row_cell.end,   row_cell.center,      row_cell.radius, SampleFaces{face_rows_.data()}};
   }
   double cell_radius(std::uint32_t row) const { return cells_[row].radius; }
   // Return where a list of pieces (samples and blocks) of each row begins that has room for all of
@@ -94,7 +94,8 @@ class SpatialLevel {
   void add_groups(const ToolModel& tool, const Level& level);
   void add_group_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
                        std::uint32_t end);
-  void add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere);
+  void add_cell(const ToolModel& tool, const Level& level, std::span<const CellSample> samples,
+                std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
   void add_parts(double tool_radius);
   void add_part(const BlockMass& mass);
@@ -108,7 +109,8 @@ class SpatialLevel {
   std::vector<ToolSum::Sum> weights_;      // of the rows before each row, and of all
   std::vector<CellBlock> blocks_;
   std::vector<BlockMass> block_masses_;
-  std::vector<CellSample> samples_;
+  std::vector<CellSample> samples_;  // numbered_samples()
+  std::vector<FaceRow> face_rows_;
   std::vector<std::uint32_t> neighbor_begin_, neighbors_;
   std::vector<CellTreeNode> nodes_;
   std::vector<std::uint32_t> roots_, root_of_row_;

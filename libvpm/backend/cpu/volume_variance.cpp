@@ -93,12 +93,11 @@ class VarianceSum {
   double area_of(const CellView& cell, const CellBlock& block, const ClipPlane& plane) {
     double area = 0;  // in parts of the tool's volume, 1/m
     for (std::uint32_t k = block.begin; k < block.end; ++k) {
-      const CellSample& sample = cell.samples[k];
-      const PieceShape<double> shape = shape_of(sample);
-      const double distance = plane.distance(widen(sample.center)), weight = sample.weight;
-      if (side_of_plane(distance, shape.reach_toward(plane.normal)) != PlaneSide::cut) continue;
-      area += weight * shape.section_of_cut(distance, plane.normal);
-      squared_weights_ += weight * weight;
+      const ToolPiece sample = piece_of(cell.samples[k], cell.faces);
+      const double distance = plane.distance(sample.at);
+      if (side_of_piece(sample.shape, distance, plane.normal) != PlaneSide::cut) continue;
+      area += sample.weight * sample.shape.section_of_cut(distance, plane.normal);
+      squared_weights_ += sample.weight * sample.weight;
     }
     return tool_volume_ * area;
   }

@@ -10,6 +10,19 @@
 
 namespace vpm::cuda {
 
+// Adds a sample that is a ball to its row; returns false for one beside a face. These come last in
+// their blocks, and are added once all balls are: so no ball waits for their longer way.
+__device__ inline bool add_ball_to_row(const CellSample& sample, const ClipPlane& plane,
+                                       ClippedMoments& row) {
+  if (sample.radius < 0) return false;
+  add_to_row(BallShape<double>{sample.radius}, sample, plane, row, row.is_cut);
+  return true;
+}
+__device__ inline void add_face_to_row(const CellSample& sample, const SampleFaces& faces,
+                                       const ClipPlane& plane, ClippedMoments& row) {
+  if (sample.radius < 0) add_to_row(shape_of(faces.of(sample)), sample, plane, row, row.is_cut);
+}
+
 // Holds one entry per cell. All are 0 at the start of a query: many threads add to them.
 struct CellNotes {
   std::uint32_t* words = nullptr;

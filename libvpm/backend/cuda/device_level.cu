@@ -178,7 +178,9 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, Shadows shad
   view_.cell_radius = memory_.copy(level.cell_radius);
   view_.block_begin = memory_.copy(level.block_begin);
   view_.blocks = memory_.copy(level.blocks);
-  view_.samples = memory_.copy(level.samples);
+  const NumberedSamples numbered = numbered_samples(level);
+  view_.samples = memory_.copy(numbered.samples);
+  view_.faces = {memory_.copy(numbered.rows)};
   view_.tool_radius = {tool.radius, shadows};
   add_edges(level.graph);
   add_tasks(tool, level);

@@ -134,7 +134,8 @@ class ImageTaskGroup {
   __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
   __device__ Measure measure_of_cell() const {
     const TaskBall& cell = task_.balls[kOfCell];
-    return work_.measure_of({.center = cell.center, .radius = cell.radius});
+    return work_.measure_of(
+        {.center = cell.center, .radius = cell.radius, .faces = work_.level.faces});
   }
   // True for all lanes of a task if `value` is true for any of them.
   __device__ bool any(bool value) const {
@@ -296,7 +297,7 @@ class ImageTaskGroup {
     if (counts == Counts::by_samples) {
       const std::uint32_t k = begin_ + turn * lanes_ + lane_;
       if (k >= end_) return false;
-      piece = piece_of(work_.level.samples[k]);
+      piece = piece_of(work_.level.samples[k], work_.level.faces);
     } else {
       if (counts != Counts::whole_cell && counts != Counts::whole_block) return false;
       if (turn > 0 || lane_ != 0) return false;
@@ -357,7 +358,7 @@ class ImageTaskGroup {
       if (is_first) {
         sampled = measure.sample_of(piece, x, on_surface);
         is_inside = exists && sampled.is_inside;
-        const WayOut way = exists ? Measure::way_out(piece, sampled, is_sample) : WayOut::none;
+        const WayOut way = exists ? Measure::way_out(sampled, is_sample) : WayOut::none;
         const unsigned sharing = __ballot_sync(~0U, way == WayOut::shared);
         if (way == WayOut::shared) leader = direction_leader(lane, sharing);
         searches = wants = is_searched(way) && leader == lane;
@@ -380,7 +381,7 @@ class ImageTaskGroup {
   // Adds a piece that is inside.
   __device__ void add_piece(const Measure& measure, const ToolPiece& piece,
                             const PieceSample& sampled, Vec3 normal, Found& found) {
-    const bool is_cut = Measure::is_cut(piece, sampled);
+    const bool is_cut = sampled.side == PlaneSide::cut;
     if constexpr (kFindsPlanes) {
       if (is_cut) measure.add_to_plane(sampled, found);
     } else {
@@ -416,9 +417,15 @@ class ImageTaskGroup {
     static_assert(WarpTaskGroups::kNarrow == 2 * (32 / TaskGroup::kTasks) &&
                   kSumRows == 32 / WarpTaskGroups::kWideTasks);
     ClippedMoments row;
+    bool is_at_face = false;
 #pragma unroll 4
     for (std::uint32_t k = lane_; k < count; k += lanes_)
-      add_to_row(work_.level.samples[begin_ + k], plane_, row, row.is_cut);
+      is_at_face |= !add_ball_to_row(work_.level.samples[begin_ + k], plane_, row);
+    if (__any_sync(~0U, is_at_face) != 0) {
+#pragma unroll 1
+      for (std::uint32_t k = lane_; k < count; k += lanes_)
+        add_face_to_row(work_.level.samples[begin_ + k], work_.level.faces, plane_, row);
+    }
     __syncwarp();
 #pragma unroll 1
     for (unsigned half = lanes_ / 2; half > 0; half /= 2) {

@@ -179,7 +179,7 @@ class TaskMeasure {
   __device__ ToolPiece piece(Task::Form form, std::uint32_t k) const {
     switch (form) {
       case Task::samples:
-        return piece_of(work_.level.samples[k]);
+        return piece_of(work_.level.samples[k], work_.level.faces);
       case Task::whole_cell:
         return piece_of(work_.level.cell_masses[k], work_.level.cell(k));
       default:
@@ -195,7 +195,7 @@ class TaskMeasure {
     const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
     const typename Measure::PieceSample sampled = measure.sample_piece(piece);
     const WayOut way =
-        exists ? Measure::way_out(piece, sampled, task.form == Task::samples) : WayOut::none;
+        exists ? Measure::way_out(sampled, task.form == Task::samples) : WayOut::none;
     const unsigned first =
         Surface::kSearchesFoot ? first_neighbor(subwarp, way == WayOut::shared) : subwarp.lane;
     Vec3 normal;
@@ -203,7 +203,7 @@ class TaskMeasure {
     if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
     if (exists) work_.add_unseen(measure, piece, sampled);
     if (way == WayOut::none) return;
-    measure.note(piece, sampled, result);
+    measure.note(sampled, result);
     work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
   }
 
@@ -223,19 +223,25 @@ class TaskMeasure {
     const CellSample* const samples = work_.level.samples + task.begin;
     CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
     ClippedMoments row;
+    bool is_at_face = false;
 #pragma unroll 1
     for (std::uint32_t k = subwarp.lane; k < task.count;) {
       const CellSample sample = next;
       k += subwarp.width;
       if (k < task.count) next = samples[k];
-      add_to_row(sample, plane, row, row.is_cut);
+      is_at_face |= !add_ball_to_row(sample, plane, row);
+    }
+    if (is_at_face) {
+#pragma unroll 1
+      for (std::uint32_t k = subwarp.lane; k < task.count; k += subwarp.width)
+        add_face_to_row(samples[k], work_.level.faces, plane, row);
     }
     __syncwarp(subwarp.mask);
     add_up(subwarp, row);
     CellResult result;
     if (subwarp.leads()) {
       if (row.is_cut)
-        work_.measure_of({.center = cell, .radius = radius})
+        work_.measure_of({.center = cell, .radius = radius, .faces = work_.level.faces})
             .add_to_plane(center, plane, result.plane);
       add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_radius, result.sum);
     }
@@ -247,7 +253,8 @@ class TaskMeasure {
     const std::uint32_t i = task.cell;
     const Measure measure = work_.measure_of({.samples = work_.level.samples,
                                               .center = work_.level.centers[i],
-                                              .radius = work_.level.cell_radius[i]});
+                                              .radius = work_.level.cell_radius[i],
+                                              .faces = work_.level.faces});
     CellResult result;
     for (std::uint32_t begin = 0; begin < task.count; begin += subwarp.width)
       add_piece(subwarp, measure, task, begin + subwarp.lane, result);

@@ -84,7 +84,8 @@ struct LevelView {
   const CellBlock* blocks = nullptr;
   const BlockMass* block_masses = nullptr;
   const BlockMass* cell_masses = nullptr;
-  const CellSample* samples = nullptr;
+  const CellSample* samples = nullptr;  // numbered_samples()
+  SampleFaces faces;
   const BlockTask* block_tasks = nullptr;
   const TaskGroup* task_groups = nullptr;
   WarpTaskGroups of_warps;
@@ -94,8 +95,8 @@ struct LevelView {
   ToolRadius tool_radius;
 
   VPM_HD CellView cell(std::uint32_t i) const {
-    return {blocks,     block_masses,  samples, block_begin[i], block_begin[i + 1],
-            centers[i], cell_radius[i]};
+    return {blocks,     block_masses,   samples, block_begin[i], block_begin[i + 1],
+            centers[i], cell_radius[i], faces};
   }
 };
 

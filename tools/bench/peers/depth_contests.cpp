@@ -92,8 +92,8 @@ class MeasurePeer : public Peer {
     const Level& l = query_.level();
     const Camera& camera = body_.as<DepthBody>()->prepared().camera();
     const std::size_t pixels = std::size_t{camera.width} * camera.height;
-    return l.samples.size() * sizeof(CellSample) + l.blocks.size() * sizeof(CellBlock) +
-           l.graph.neighbors.size() * sizeof(std::uint32_t) +
+    return l.samples.size() * sizeof(CellSample) + l.faces.size() * sizeof(SampleFace) +
+           l.blocks.size() * sizeof(CellBlock) + l.graph.neighbors.size() * sizeof(std::uint32_t) +
            l.hierarchy.nodes.size() * sizeof(HierarchyNode) +
            l.sphere_count * (sizeof(Sphere) + sizeof(Vec3) + 2 * sizeof(double)) +
            pixels * (sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t)) +
