@@ -99,6 +99,25 @@ Shape torus() {
   return {"torus", synthetic::make_torus(kRing, kTube, kAround, kAcross), depth};
 }
 
+Shape plate() {
+  return convex("plate", synthetic::make_box(0.2, 0.2, 0.004));
+}
+
+Shape wedge() {
+  const double length = 0.2, height = length * std::tan(kPi / 12), half = 0.05;
+  Solid solid;
+  for (const double z : {-half, half})
+    for (const Vec3 corner : {Vec3{0, 0, z}, Vec3{length, 0, z}, Vec3{length, height, z}})
+      solid.vertices.push_back(corner);
+  solid.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                     {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return convex("wedge", solid);
+}
+
+Shape ball() {
+  return convex("ball", synthetic::make_icosphere(0.1, 3));
+}
+
 Packing greedy_packing(const Shape& shape, std::size_t spheres, double candidates) {
   std::vector<Candidate> free = candidates_in(shape, candidates);
   Packing packing{{}, shape.solid, {}};

@@ -32,6 +32,9 @@ Shape cube();
 Shape tetrahedron();
 Shape octahedron();
 Shape torus();
+Shape plate();  // a fiftieth of its length thick
+Shape wedge();  // a prism whose sharpest edge has 15 degrees
+Shape ball();   // of 1280 facets
 
 // Packs greedily, largest sphere first, with centres on a lattice of about `candidates` points in
 // the box.
