@@ -319,10 +319,6 @@ float round_up(double value) {
                                  : rounded;
 }
 
-float round_down(double value) {
-  return -round_up(-value);
-}
-
 // Maps pieces about a sphere's centre to stored coordinates.
 struct Placement {
   Vec3 origin;  // of what is stored
@@ -339,10 +335,11 @@ struct Placement {
     const Vec3 stored = widen(place(piece.centroid)) / unit + origin;
     piece.face = faces.beside(stored, piece.moment_radius, piece.moment);
   }
-  SampleFace face(const FaceExtents& face, std::size_t sample) const {
-    return {static_cast<std::uint32_t>(sample),    narrow(face.axis),
-            round_down(unit * face.toward),        round_down(unit * face.away),
-            static_cast<float>(unit * face.along), round_down(unit * face.across)};
+  SampleFace face(SampleFace face, std::size_t sample) const {
+    face.sample = static_cast<std::uint32_t>(sample);
+    for (float* const extent : {&face.toward, &face.away, &face.along, &face.across})
+      *extent *= static_cast<float>(unit);  // a power of two
+    return face;
   }
   CellBlock block(std::span<const CellPiece> pieces) const {
     std::vector<Sphere> balls;

@@ -17,9 +17,9 @@ struct CellPiece {
   double volume = 0;
   // Radius of the ball with the same second moment.
   double moment_radius = 0;
-  double bounding_radius = 0;         // largest distance of its points from the centroid
-  Moment moment;                      // second moment about the centroid, per volume
-  std::optional<FaceExtents> face{};  // beside which it lies
+  double bounding_radius = 0;        // largest distance of its points from the centroid
+  Moment moment;                     // second moment about the centroid, per volume
+  std::optional<SampleFace> face{};  // beside which it lies; its `sample` is not set
 };
 
 // Appends pieces of a ball, about size^3 in volume each; their volumes sum to the ball's and their

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/model/tool_model.h"
@@ -36,29 +35,17 @@ struct Moment {
   }
 };
 
-// Extents of a piece beside a face, as SampleFace has them.
-struct FaceExtents {
-  Vec3 axis;
-  double toward = 0, away = 0, along = 0, across = 0;
-};
-
 class SolidFaces {
  public:
-  // `boundary` is closed and without crossings; keeps a reference to it. `radius` is its largest
-  // distance from the centre of mass.
+  // `boundary` is closed and without crossings. `radius` is its largest distance from the centre of
+  // mass.
   SolidFaces(const Solid& boundary, double radius);
 
   // Returns the shape of a piece about a centroid in the solid, of this moment radius and second
   // moment per volume; none where the ball of that radius stays within the solid. Thread-safe.
-  std::optional<FaceExtents> beside(Vec3 centroid, double radius, const Moment& moment) const;
+  std::optional<SampleFace> beside(Vec3 centroid, double radius, const Moment& moment) const;
 
  private:
-  struct Near;
-  std::vector<Near> about(Vec3 centroid, double radius) const;
-  double most_across(const FaceExtents& face, const Near& near, double most) const;
-  bool faces(std::uint32_t triangle, Vec3 direction) const;
-
-  const Solid& boundary_;
   TriangleBvh tree_;
   double excess_;  // by which shapes may stick out of curved faces
 };
