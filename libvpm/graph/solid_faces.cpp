@@ -21,7 +21,6 @@ constexpr double kRightAngle = 1e-9;
 // a shape may stick out by so much of the solid's radius, since a shape that is thin enough to stay
 // below a curved face has not its piece's second moment.
 constexpr double kSmooth = 0.7, kExcess = 5e-4;
-constexpr int kBisections = 30;
 
 // A triangle near a centroid, relative to it.
 struct NearTriangle {
@@ -53,25 +52,6 @@ std::vector<NearTriangle> triangles_about(const TriangleBvh& tree, Vec3 centroid
   return all;
 }
 
-// Returns the squared extent across the axis, `most` at most, with which an ellipsoid about the
-// origin, whose extent along the axis is `end`, does not reach a triangle.
-double most_beside(Vec3 a, Vec3 b, Vec3 c, Vec3 axis, double end, double most) {
-  const auto fits = [&](double across) {
-    const auto to_ball = [&](Vec3 p) {
-      const Vec3 along = dot(axis, p) * axis;
-      return along + end / across * (p - along);
-    };
-    return norm(closest_point_on_triangle({}, to_ball(a), to_ball(b), to_ball(c))) >= end;
-  };
-  double low = 0, high = std::sqrt(most);
-  if (!(high > 0) || fits(high)) return most;
-  for (int k = 0; k < kBisections; ++k) {
-    const double middle = 0.5 * (low + high);
-    (fits(middle) ? low : high) = middle;
-  }
-  return low * low;
-}
-
 // Returns the squared extent across the axis, `most` at most, with which a shape does not reach a
 // triangle: since it stays below the triangle's plane, or since it stays away from the triangle. It
 // may reach `excess` beyond a triangle of its own face.
@@ -83,12 +63,9 @@ double most_across(const NearTriangle& near, Vec3 axis, double toward, double aw
   const double height = near.height + excess;
   double below = height >= std::fabs(end) ? most : 0;
   if (height > 0 && sine2 > kRightAngle) below = (height * height - end * end) / sine2;
-  if (below >= most) return most;
-  const double lowest = std::min({dot(axis, near.a), dot(axis, near.b), dot(axis, near.c)});
-  const double rest = (lowest >= 0 ? toward : away) - excess;
-  if (!(rest > 0)) return most;
-  const double beside = std::sqrt(most_beside(near.a, near.b, near.c, axis, rest, most)) + excess;
-  return std::min(most, std::max(below, beside * beside));
+  const double beside = near.distance + excess;
+  if (dot(near.place, axis) >= 0 || away <= beside) below = std::max(below, beside * beside);
+  return std::clamp(below, 0.0, most);
 }
 
 float round_down(double value) {
