@@ -26,14 +26,14 @@ $ for p in "0 0 0.7" "0 0 0.95" "0 0 1.4" "0.36 0 0.7"; do vpm-query --tool cube
 
 # Volumes above a limit, in m³, are named by their poses. The cube has 0.008 m³.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --fail-above 0.001 -o above.jsonl
-2> vpm-query: note: pose 1: 0.00200136 m³, above 0.001
+2> vpm-query: note: pose 1: 0.00200119 m³, above 0.001
 [10]
 $ $VALIDATE query-result above.jsonl && grep -c '"above":false' above.jsonl
 4
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --fail-above 0.003 -o /dev/null
 $ vpm-query --tool cube.vpmg --tool cube.vpmg --cloud wall.vpmc --poses all.txt --collides --fail-above 0.001 -o /dev/null
-2> vpm-query: note: pose 1, tool 0: 0.00200136 m³, above 0.001
-2> vpm-query: note: pose 1, tool 1: 0.00200136 m³, above 0.001
+2> vpm-query: note: pose 1, tool 0: 0.00200119 m³, above 0.001
+2> vpm-query: note: pose 1, tool 1: 0.00200119 m³, above 0.001
 [10]
 
 # The limit is a part of the tool; without --collides nothing is answered.

@@ -28,7 +28,7 @@ $ for p in 0.15,0,0.95 0.3,0,0.95; do vpm-query --tool cube.vpmg --cloud half.vp
 "volume_fraction":0.0
 2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
 2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
-$ for p in 0.3 0.5; do vpm-query --tool cube.vpmg --cloud whole.vpmc --pose $p,0,0.95,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
+$ for p in 0.3 0.55; do vpm-query --tool cube.vpmg --cloud whole.vpmc --pose $p,0,0.95,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
 "volume_fraction":0.2
 "volume_fraction":0.1
 2> vpm-query: warning: at pose 0 a quarter or more of the tool behind the surface lies where nothing was measured, and counts for nothing: move the camera, or fill the holes
