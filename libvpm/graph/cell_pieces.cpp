@@ -333,7 +333,10 @@ struct Placement {
   // Finds the face beside a piece, as it lies when its centroid is stored.
   void find_face(const SolidFaces& faces, CellPiece& piece) const {
     const Vec3 stored = widen(place(piece.centroid)) / unit + origin;
-    piece.face = faces.beside(stored, piece.moment_radius, piece.moment);
+    Vec3 inside = stored;
+    piece.face = faces.beside(inside, piece.moment_radius, piece.moment);
+    piece.centroid += inside - stored;
+    piece.bounding_radius += norm(inside - stored);
   }
   SampleFace face(SampleFace face, std::size_t sample) const {
     face.sample = static_cast<std::uint32_t>(sample);

@@ -7,8 +7,8 @@ namespace vpm {
 
 namespace {
 
-// Least distance of a centroid from the surface, and least extent along the axis, in moment radii,
-// of a piece that gets a shape. What is thinner is rounding of what cells are sampled to.
+// Least extent along the axis, in moment radii, of a piece that gets a shape. What is thinner is
+// rounding of what cells are sampled to.
 constexpr double kThinnest = 1e-3;
 // How far about a centroid triangles are looked for, in moment radii: shapes reach no further.
 constexpr double kLook = 1.75;
@@ -52,6 +52,11 @@ std::vector<NearTriangle> triangles_about(const TriangleBvh& tree, Vec3 centroid
   return all;
 }
 
+std::vector<NearTriangle>::const_iterator nearest_of(const std::vector<NearTriangle>& all) {
+  return std::min_element(all.begin(), all.end(),
+                          [](const auto& a, const auto& b) { return a.distance < b.distance; });
+}
+
 // Returns the squared extent across the axis, `most` at most, with which a shape does not reach a
 // triangle: since it stays below the triangle's plane, or since it stays away from the triangle. It
 // may reach `excess` beyond a triangle of its own face.
@@ -78,22 +83,25 @@ float round_down(double value) {
 SolidFaces::SolidFaces(const Solid& boundary, double radius)
     : tree_(boundary.vertices, boundary.triangles), excess_(kExcess * radius) {}
 
-std::optional<SampleFace> SolidFaces::beside(Vec3 centroid, double radius,
+std::optional<SampleFace> SolidFaces::beside(Vec3& centroid, double radius,
                                              const Moment& moment) const {
-  const std::vector<NearTriangle> all = triangles_about(tree_, centroid, kLook * radius);
-  const auto nearest = std::min_element(
-      all.begin(), all.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  if (nearest == all.end() || nearest->distance >= radius ||
-      nearest->distance <= kThinnest * radius)
-    return std::nullopt;
+  const double least = kThinnest * radius;
+  std::vector<NearTriangle> all = triangles_about(tree_, centroid, kLook * radius);
+  auto nearest = nearest_of(all);
+  if (nearest == all.end() || nearest->distance >= radius) return std::nullopt;
+  if (dot(nearest->normal, nearest->place) <= least) {
+    centroid += nearest->place - 2 * least * nearest->normal;
+    all = triangles_about(tree_, centroid, kLook * radius);
+    nearest = nearest_of(all);
+  }
+  if (nearest == all.end() || dot(nearest->normal, nearest->place) <= 0) return std::nullopt;
   const Vec3 axis = nearest->place / nearest->distance;
-  if (dot(nearest->normal, axis) <= 0) return std::nullopt;  // the centroid lies outside
   double toward = nearest->distance, away = HUGE_VAL;
   for (const NearTriangle& near : all)
     if (dot(near.place, axis) < kOpposite * near.distance) away = std::min(away, near.distance);
   const double variance = std::min(moment.along(axis), most_variance_at_face(toward, away)),
                along = std::sqrt(5 * variance);
-  if (!(along > kThinnest * radius)) return std::nullopt;
+  if (!(along > least)) return std::nullopt;
   toward = std::min(toward, along);
   away = std::min(away, along);
   double across = (3 * radius * radius - 5 * variance) / 2;  // five variances, squared

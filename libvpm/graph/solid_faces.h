@@ -42,8 +42,9 @@ class SolidFaces {
   SolidFaces(const Solid& boundary, double radius);
 
   // Returns the shape of a piece about a centroid in the solid, of this moment radius and second
-  // moment per volume; none where the ball of that radius stays within the solid. Thread-safe.
-  std::optional<SampleFace> beside(Vec3 centroid, double radius, const Moment& moment) const;
+  // moment per volume; none where the ball of that radius stays within the solid. Moves a centroid
+  // that lies outside by rounding, or on the surface, to just below it. Thread-safe.
+  std::optional<SampleFace> beside(Vec3& centroid, double radius, const Moment& moment) const;
 
  private:
   TriangleBvh tree_;

@@ -122,7 +122,7 @@ class Faces : public testing::TestWithParam<FacesCase> {};
 TEST_P(Faces, CountForNothingBeforeContactAndWholeBehindThem) {
   const auto [shape_of_case, spheres] = GetParam();
   const test::Shape shape = shape_of_case();
-  const Packing packing = test::greedy_packing(shape, spheres, 10000);
+  const Packing packing = test::greedy_packing(shape, spheres, 9261);
   const ToolModel model = build_tool_model(packing, {});
   test::Numbers numbers(5);
   const auto expect_nothing = [&](Vec3 direction) {
