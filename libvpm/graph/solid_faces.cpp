@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace vpm {
-
 namespace {
 
 // Least extent along the axis, in moment radii, of a piece that gets a shape. What is thinner is
@@ -17,6 +16,8 @@ constexpr double kLook = 1.75;
 constexpr double kOpposite = -0.7;
 // Sine squared below which a plane is at a right angle to the axis.
 constexpr double kRightAngle = 1e-9;
+// Relative difference up to which distances are to one place, but for rounding.
+constexpr double kSamePlace = 1e-9;
 // Cosine of the axis and the normal of a triangle above which they belong to one smooth face. There
 // a shape may stick out by so much of the solid's radius, since a shape that is thin enough to stay
 // below a curved face has not its piece's second moment.
@@ -24,11 +25,10 @@ constexpr double kSmooth = 0.7, kExcess = 5e-4;
 
 // A triangle near a centroid, relative to it.
 struct NearTriangle {
-  Vec3 a, b, c;
-  Vec3 place{};         // its nearest
-  double distance = 0;  // of that
-  Vec3 normal{};        // of its plane, out of the solid
-  double height = 0;    // of its plane above the centroid
+  Vec3 place;       // its nearest
+  double distance;  // of that
+  Vec3 normal;      // of its plane, out of the solid
+  double height;    // of its plane above the centroid
 };
 
 // Lists the triangles within a radius of a centroid.
@@ -41,20 +41,26 @@ std::vector<NearTriangle> triangles_about(const TriangleBvh& tree, Vec3 centroid
   }
   std::vector<NearTriangle> all;
   for (std::size_t k = 0; k < count; ++k) {
-    const TriangleBvh::Corners& corners = tree.corners()[found[k]];
-    NearTriangle near{corners.a - centroid, corners.b - centroid, corners.c - centroid};
-    near.place = closest_point_on_triangle({}, near.a, near.b, near.c);
-    near.distance = norm(near.place);
-    near.normal = normalized_or_zero(cross(near.b - near.a, near.c - near.a));
-    near.height = dot(near.normal, near.a);
-    if (near.distance < radius) all.push_back(near);
+    const TriangleBvh::Corners& t = tree.corners()[found[k]];
+    const Vec3 place = closest_point_on_triangle(centroid, t.a, t.b, t.c) - centroid,
+               normal = normalized_or_zero(cross(t.b - t.a, t.c - t.a));
+    if (norm(place) < radius)
+      all.push_back({place, norm(place), normal, dot(normal, t.a - centroid)});
   }
   return all;
 }
 
-std::vector<NearTriangle>::const_iterator nearest_of(const std::vector<NearTriangle>& all) {
-  return std::min_element(all.begin(), all.end(),
-                          [](const auto& a, const auto& b) { return a.distance < b.distance; });
+// Returns the nearest triangle, or null. Of triangles that share the nearest place, that of an
+// edge, it is the one that faces the centroid most: others may be seen from behind.
+const NearTriangle* nearest_of(const std::vector<NearTriangle>& all) {
+  const NearTriangle* best = nullptr;
+  for (const NearTriangle& near : all) {
+    if (best == nullptr || near.distance < (1 - kSamePlace) * best->distance ||
+        (near.distance <= (1 + kSamePlace) * best->distance &&
+         std::fabs(near.height) > std::fabs(best->height)))
+      best = &near;
+  }
+  return best;
 }
 
 // Returns the squared extent across the axis, `most` at most, with which a shape does not reach a
@@ -87,14 +93,14 @@ std::optional<SampleFace> SolidFaces::beside(Vec3& centroid, double radius,
                                              const Moment& moment) const {
   const double least = kThinnest * radius;
   std::vector<NearTriangle> all = triangles_about(tree_, centroid, kLook * radius);
-  auto nearest = nearest_of(all);
-  if (nearest == all.end() || nearest->distance >= radius) return std::nullopt;
-  if (dot(nearest->normal, nearest->place) <= least) {
+  const NearTriangle* nearest = nearest_of(all);
+  if (nearest == nullptr || nearest->distance >= radius) return std::nullopt;
+  if (nearest->height <= least) {
     centroid += nearest->place - 2 * least * nearest->normal;
     all = triangles_about(tree_, centroid, kLook * radius);
     nearest = nearest_of(all);
   }
-  if (nearest == all.end() || dot(nearest->normal, nearest->place) <= 0) return std::nullopt;
+  if (nearest == nullptr || nearest->height <= 0) return std::nullopt;
   const Vec3 axis = nearest->place / nearest->distance;
   double toward = nearest->distance, away = HUGE_VAL;
   for (const NearTriangle& near : all)
@@ -104,7 +110,7 @@ std::optional<SampleFace> SolidFaces::beside(Vec3& centroid, double radius,
   if (!(along > least)) return std::nullopt;
   toward = std::min(toward, along);
   away = std::min(away, along);
-  double across = (3 * radius * radius - 5 * variance) / 2;  // five variances, squared
+  double across = std::max(0.0, 1.5 * radius * radius - 2.5 * variance);  // five variances
   for (const NearTriangle& near : all)
     across = most_across(near, axis, toward, away, excess_, across);
   return SampleFace{0,
@@ -112,7 +118,7 @@ std::optional<SampleFace> SolidFaces::beside(Vec3& centroid, double radius,
                     round_down(toward),
                     round_down(away),
                     static_cast<float>(along),
-                    round_down(std::sqrt(std::max(across, 0.0)))};
+                    round_down(std::sqrt(across))};
 }
 
 }  // namespace vpm

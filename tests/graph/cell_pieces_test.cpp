@@ -238,6 +238,39 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Cells,
                                          test::torus),
                          [](const auto& tested) { return tested.param().name; });
 
+// Beside the edge between two legs one face is seen along its plane, which is not from outside.
+TEST(SolidFaces, MoveOnlyCentroidsThatLieOutside) {
+  Solid angle;  // two legs of 2 x 1 m
+  for (const double z : {0.0, 1.0})
+    for (const Vec3 at :
+         {Vec3{0, 0, z}, Vec3{2, 0, z}, Vec3{2, 1, z}, Vec3{1, 1, z}, Vec3{1, 2, z}, Vec3{0, 2, z}})
+      angle.vertices.push_back(at);
+  for (std::uint32_t k = 1; k < 5; ++k) {
+    angle.triangles.push_back({0, k + 1, k});
+    angle.triangles.push_back({6, k + 6, k + 7});
+  }
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    const std::uint32_t next = (k + 1) % 6;
+    angle.triangles.push_back({k, next, next + 6});
+    angle.triangles.push_back({k, next + 6, k + 6});
+  }
+  const SolidFaces faces(angle, 1.5);
+  const double radius = 0.3;
+  for (const double depth : {0.01, 0.1, 0.29}) {
+    for (const Vec3 at : {Vec3{1, 1 - depth, 0.5}, Vec3{1 - depth, 1, 0.5}}) {
+      Vec3 centroid = at;
+      const auto face = faces.beside(centroid, radius, Moment::of_ball(radius));
+      EXPECT_EQ(norm(centroid - at), 0);
+      ASSERT_TRUE(face);
+      EXPECT_NEAR(face->toward, depth, 1e-6);
+    }
+  }
+  Vec3 outside{2.01, 0.5, 0.5};
+  EXPECT_TRUE(faces.beside(outside, radius, Moment::of_ball(radius)));
+  EXPECT_LT(outside.x, 2);
+  EXPECT_GT(outside.x, 2 - 0.01 * radius);
+}
+
 TEST(BallPieces, SumToTheBall) {
   for (const double radius : {0.1, 1.0, 1.7, 2.5, 4.0, 9.3}) {
     std::vector<CellPiece> pieces;
