@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libvpm/cloud/depth_image.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {
@@ -42,60 +43,85 @@ struct Hole {
 
 constexpr Pixel kBeside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 
+// What a pixel is to the search for holes.
+enum Kind : std::uint8_t {
+  kKnown,    // something was measured there
+  kInRim,    // too, and it is in the rim that is being gathered
+  kRemoved,  // nobody knows what is there
+  kHole,     // nothing was measured, and no hole was taken yet that it is of
+  kTaken,    // of a hole that was taken
+  kReached,  // too, and near what was measured
+};
+
+// Writes the kinds of an image's pixels.
+VPM_VECTOR_CLONES
+void find_kinds(const InverseDepthRange* pixels, const float* measured, std::size_t count,
+                std::uint8_t* kinds) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t unknown = is_removed(measured[i]) ? kRemoved : kHole;
+    kinds[i] = pixels[i].high > 0 ? std::uint8_t{kKnown} : unknown;
+  }
+}
+
 // Finds the holes of an image one by one.
 class HoleSearch {
  public:
   explicit HoleSearch(const DepthSampler& image)
       : image_(image),
-        marks_(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), 0) {}
+        kinds_(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
+    find_kinds(image.tiles[0], image.measured, kinds_.size(), kinds_.data());
+  }
 
-  // True for the first pixel of a hole that was not taken.
-  bool is_new(int u, int v) const { return is_hole_pixel({u, v}) && marks_[index({u, v})] == 0; }
-  // Takes the hole of a pixel. Calls fit(part) for its parts, with their rims, unless something of
-  // it is far from all that was measured.
+  // Calls fit(part) for the parts of all holes, with their rims, but for holes of which something
+  // is far from all that was measured.
   template <class Fit>
-  void take(Pixel first, const Fit& fit) {
-    ++number_;
-    Hole hole{{first}, {}, first, first};
-    marks_[index(first)] = number_;
-    for (std::size_t k = 0; k < hole.pixels.size(); ++k) add_beside(hole.pixels[k], hole);
-    if (hole.is_closed && is_shallow(hole)) fit_parts(std::move(hole), fit);
+  void run(const Fit& fit) {
+    for (auto at = std::ranges::find(kinds_, kHole); at != kinds_.end();
+         at = std::find(at, kinds_.end(), kHole)) {
+      const auto index = static_cast<int>(at - kinds_.begin());
+      take({index % image_.width, index / image_.width}, fit);
+    }
   }
 
  private:
-  std::size_t index(Pixel at) const { return static_cast<std::size_t>(at.v * image_.width + at.u); }
+  std::uint8_t& kind(Pixel at) {
+    return kinds_[static_cast<std::size_t>(at.v) * static_cast<std::size_t>(image_.width) +
+                  static_cast<std::size_t>(at.u)];
+  }
   bool is_inside(Pixel at) const {
     return at.u >= 0 && at.v >= 0 && at.u < image_.width && at.v < image_.height;
   }
-  bool is_known(Pixel at) const { return image_.tiles[0][index(at)].high > 0; }
-  bool is_hole_pixel(Pixel at) const {
-    return !is_known(at) && !is_removed(image_.measured[index(at)]);
-  }
 
+  template <class Fit>
+  void take(Pixel first, const Fit& fit) {
+    Hole hole{{first}, {}, first, first};
+    kind(first) = kTaken;
+    for (std::size_t k = 0; k < hole.pixels.size(); ++k) add_beside(hole.pixels[k], hole);
+    if (hole.is_closed && is_shallow(hole)) fit_parts(std::move(hole), fit);
+  }
   void add_beside(Pixel own, Hole& hole) {
     for (const Pixel& step : kBeside) {
       const Pixel at{own.u + step.u, own.v + step.v};
-      if (!is_inside(at) || (!is_known(at) && !is_hole_pixel(at))) {
+      if (!is_inside(at) || kind(at) == kRemoved) {
         hole.is_closed = false;
-      } else if (is_new(at.u, at.v)) {
-        marks_[index(at)] = number_;
+      } else if (kind(at) == kHole) {
+        kind(at) = kTaken;
         hole.add(at);
       }
     }
   }
   // True for a pixel of a closed hole beside one that has measured something.
-  bool is_at_rim(Pixel own) const {
+  bool is_at_rim(Pixel own) {
     return std::ranges::any_of(kBeside, [&](const Pixel& step) {
-      return is_known({own.u + step.u, own.v + step.v});
+      return kind({own.u + step.u, own.v + step.v}) <= kInRim;
     });
   }
   // True if each pixel of a closed hole is within kDeepest steps of one that has measured
   // something.
   bool is_shallow(const Hole& hole) {
-    ++number_;
     std::vector<Pixel> reached;
     const auto reach = [&](Pixel at) {
-      marks_[index(at)] = number_;
+      kind(at) = kReached;
       reached.push_back(at);
     };
     for (const Pixel& own : hole.pixels)
@@ -105,7 +131,7 @@ class HoleSearch {
       for (const std::size_t last = reached.size(); next < last; ++next) {
         for (const Pixel& beside : kBeside) {
           const Pixel at{reached[next].u + beside.u, reached[next].v + beside.v};
-          if (!is_known(at) && marks_[index(at)] != number_) reach(at);
+          if (kind(at) == kTaken) reach(at);
         }
       }
     }
@@ -127,22 +153,23 @@ class HoleSearch {
     for (Hole& half : halves) fit_parts(std::move(half), fit);
   }
   void add_rim(Hole& hole) {
-    ++number_;
     for (const Pixel& own : hole.pixels) {
-      const bool has_rim = is_at_rim(own);
-      for (int v = own.v - kRim; has_rim && v <= own.v + kRim; ++v) {
-        for (int u = own.u - kRim; u <= own.u + kRim; ++u) {
-          if (!is_inside({u, v}) || !is_known({u, v}) || marks_[index({u, v})] == number_) continue;
-          marks_[index({u, v})] = number_;
+      if (!is_at_rim(own)) continue;
+      const Pixel first{std::max(own.u - kRim, 0), std::max(own.v - kRim, 0)},
+          last{std::min(own.u + kRim, image_.width - 1), std::min(own.v + kRim, image_.height - 1)};
+      for (int v = first.v; v <= last.v; ++v) {
+        for (int u = first.u; u <= last.u; ++u) {
+          if (kind({u, v}) != kKnown) continue;
+          kind({u, v}) = kInRim;
           hole.rim.push_back({u, v});
         }
       }
     }
+    for (const Pixel& pixel : hole.rim) kind(pixel) = kKnown;
   }
 
   const DepthSampler& image_;
-  std::vector<std::uint32_t> marks_;  // the number of a pixel's hole, or of the last rim it is in
-  std::uint32_t number_ = 0;
+  std::vector<std::uint8_t> kinds_;  // by pixel
 };
 
 using Numbers = std::array<double, 6>;  // of a paraboloid
@@ -409,19 +436,17 @@ void fit_hole(const DepthSampler& image, const Hole& hole, const Tell& tell) {
 // Returns an upper bound of the inverse depth, 1/m, that a fit has anywhere in the area of a pixel.
 float greatest_at(const HoleFit& fit, Pixel at) {
   constexpr double kHalf = 0.5, kRounding = 1 + 1e-6;
-  const double x = at.u - double{fit.u}, y = at.v - double{fit.v};
-  const double per_u = fit.b + 2 * fit.d * x + fit.e * y, per_v = fit.c + fit.e * x + 2 * fit.f * y;
-  const double middle = fit.a + (fit.b + fit.d * x + fit.e * y) * x + (fit.c + fit.f * y) * y;
-  const double more = kHalf * (std::fabs(per_u) + std::fabs(per_v)) +
+  const FitAt<double> middle =
+      evaluate<double>([&](float HoleFit::*number) { return double{fit.*number}; }, at.u, at.v);
+  const double more = kHalf * (std::fabs(middle.per_u) + std::fabs(middle.per_v)) +
                       kHalf * kHalf * (std::fabs(fit.d) + std::fabs(fit.e) + std::fabs(fit.f));
-  return static_cast<float>(kRounding * (middle + more));
+  return static_cast<float>(kRounding * (middle.inverse_depth + more));
 }
 
 }  // namespace
 
 ImageHoles::ImageHoles(const DepthSampler& image) {
   const auto columns = static_cast<std::size_t>(HoleFits::tiles(image.width));
-  HoleSearch search(image);
   const auto tell = [&](const HoleFit& fit, const std::vector<Pixel>& pixels) {
     fits_.push_back(fit);
     numbers_.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
@@ -434,12 +459,7 @@ ImageHoles::ImageHoles(const DepthSampler& image) {
       greatest = std::max(greatest, greatest_at(fit, at));
     }
   };
-  for (int v = 0; v < image.height; ++v) {
-    for (int u = 0; u < image.width; ++u) {
-      if (search.is_new(u, v))
-        search.take({u, v}, [&](const Hole& part) { fit_hole(image, part, tell); });
-    }
-  }
+  HoleSearch(image).run([&](const Hole& part) { fit_hole(image, part, tell); });
   columns_ = static_cast<std::int32_t>(columns);
 }
 

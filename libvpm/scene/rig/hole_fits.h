@@ -18,6 +18,23 @@ struct HoleFit {
   float a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
 };
 
+// What a fit tells at a place of the image, or fits at four: inverse depth, 1/m, and how it changes
+// per pixel.
+template <class Real>
+struct FitAt {
+  Real inverse_depth, per_u, per_v;
+};
+// Evaluates a fit whose numbers get(member) returns.
+template <class Real, class Get>
+[[gnu::always_inline]] VPM_HD inline FitAt<Real> evaluate(const Get& get, const Real& u,
+                                                          const Real& v) {
+  const Real x = u - get(&HoleFit::u), y = v - get(&HoleFit::v);
+  const Real b = get(&HoleFit::b), c = get(&HoleFit::c), d = get(&HoleFit::d), e = get(&HoleFit::e),
+             f = get(&HoleFit::f);
+  return {get(&HoleFit::a) + (b + d * x + e * y) * x + (c + f * y) * y, b + 2 * d * x + e * y,
+          c + e * x + 2 * f * y};
+}
+
 // Holds plain pointers to the fits of an image, for host or device.
 struct HoleFits {
   const HoleFit* fits = nullptr;

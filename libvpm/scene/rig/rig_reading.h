@@ -119,12 +119,7 @@ struct RigReader {
                     [&](std::int32_t i) { return holes.fits[i].*member; });
     };
     const Intrinsics& k = camera.image.k;
-    const Real x = u - get(&HoleFit::u), y = v - get(&HoleFit::v);
-    const Real d = get(&HoleFit::d), e = get(&HoleFit::e), f = get(&HoleFit::f);
-    const Real per_u = get(&HoleFit::b) + 2 * d * x + e * y,
-               per_v = get(&HoleFit::c) + e * x + 2 * f * y;
-    const Real inverse_depth =
-        get(&HoleFit::a) + (get(&HoleFit::b) + d * x + e * y) * x + (get(&HoleFit::c) + f * y) * y;
+    const auto [inverse_depth, per_u, per_v] = evaluate<Real>(get, u, v);
     const MaskOf<Real> is_fit = is_hole & (inverse_depth > 0);
     // The plane through that point: inverse depth times depth is 1 on it.
     const Place along{k.fx * per_u, k.fy * per_v,

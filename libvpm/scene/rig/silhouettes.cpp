@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "libvpm/cloud/depth_image.h"
@@ -40,28 +41,69 @@ struct FilledImage {
   }
 };
 
-float farthest_around(const DepthSampler& image, int u, int v) {
-  float least = HUGE_VALF;
-  for (int y = std::max(v - kFillReach, 0); y <= std::min(v + kFillReach, image.height - 1); ++y) {
-    for (int x = std::max(u - kFillReach, 0); x <= std::min(u + kFillReach, image.width - 1); ++x) {
-      const float value = image.tiles[0][y * image.width + x].high;
-      if (value > 0 && value < least) least = value;
+// Takes the least of positive inverse depths of a row, and of those that `least` holds.
+VPM_VECTOR_CLONES
+void take_less(const InverseDepthRange* row, int count, float* least) {
+  for (int u = 0; u < count; ++u) {
+    const float value = row[u].high;
+    least[u] = (value > 0) & (value < least[u]) ? value : least[u];
+  }
+}
+
+// Copies the inverse depths of a row. Returns false if all of them are known.
+VPM_VECTOR_CLONES
+bool copy_row(const InverseDepthRange* from, int count, float* to) {
+  std::uint32_t unknown = 0;
+  for (int u = 0; u < count; ++u) {
+    to[u] = from[u].high;
+    unknown |= !(from[u].high > 0);
+  }
+  return unknown != 0;
+}
+
+// Fills holes with the farthest depth of the pixels about them.
+class HoleFill {
+ public:
+  explicit HoleFill(const DepthSampler& image)
+      : image_(image), least_(static_cast<std::size_t>(image.width)) {}
+
+  // Writes row v to `filled`.
+  void take_row(int v, float* filled) {
+    holes_.clear();
+    if (!copy_row(row(v), image_.width, filled)) return;
+    for (int u = 0; u < image_.width; ++u)
+      if (!(filled[u] > 0) && !is_removed(image_.measured[v * image_.width + u]))
+        holes_.push_back(u);
+    if (holes_.empty()) return;
+    find_least_of_columns(v);
+    for (const int u : holes_) {
+      const float least = *std::min_element(least_.begin() + std::max(u - kFillReach, 0),
+                                            least_.begin() + end_about(u));
+      filled[u] = least < HUGE_VALF ? least : 0;
     }
   }
-  return least < HUGE_VALF ? least : 0;
-}
+
+ private:
+  const InverseDepthRange* row(int v) const { return image_.tiles[0] + v * image_.width; }
+  int end_about(int u) const { return std::min(u + kFillReach + 1, image_.width); }
+  void find_least_of_columns(int v) {
+    const int begin = std::max(holes_.front() - kFillReach, 0), end = end_about(holes_.back());
+    std::fill(least_.begin() + begin, least_.begin() + end, HUGE_VALF);
+    for (int y = std::max(v - kFillReach, 0); y <= std::min(v + kFillReach, image_.height - 1); ++y)
+      take_less(row(y) + begin, end - begin, least_.data() + begin);
+  }
+
+  const DepthSampler& image_;
+  std::vector<int> holes_;    // columns of the row
+  std::vector<float> least_;  // by column, 1/m
+};
 
 FilledImage filled(const DepthSampler& image) {
   FilledImage all{image.width, image.height, {}};
   all.values.resize(all.index(0, image.height));
   for_bands(image.height, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < image.width; ++u) {
-        const float value = image.tiles[0][v * image.width + u].high;
-        const bool is_hole = !(value > 0) && !is_removed(image.measured[v * image.width + u]);
-        all.values[all.index(u, v)] = is_hole ? farthest_around(image, u, v) : value;
-      }
-    }
+    HoleFill fill(image);
+    for (int v = begin; v < end; ++v) fill.take_row(v, all.values.data() + all.index(0, v));
   });
   return all;
 }
@@ -137,34 +179,45 @@ std::vector<SilhouettePixel> find_pixels(const DepthSampler& image, const Filled
   return pixels;
 }
 
-// Takes for each pixel of row v the row of the last silhouette pixel in its column, where that is
-// within kSilhouetteReach and nearer than the one that it has.
+// More rows than those within which a silhouette is read.
+constexpr std::int8_t kFarRows = kSilhouetteReach + 1;
+
+// Counts for each column the rows since its last silhouette pixel, up to kFarRows.
+[[gnu::always_inline]] inline std::int8_t rows_since(std::uint8_t is_silhouette, std::int8_t last) {
+  const auto next = static_cast<std::int8_t>(last < kFarRows ? last + 1 : kFarRows);
+  return is_silhouette != 0 ? std::int8_t{0} : next;
+}
 VPM_VECTOR_CLONES
-void take_last_rows(const std::uint32_t* numbers, int v, int width, int* last, int* rows) {
-  constexpr int kFar = 2 * kSilhouetteReach;
+void take_above(const std::uint8_t* is_silhouette, int width, std::int8_t* since,
+                std::int8_t* down) {
   for (int u = 0; u < width; ++u) {
-    last[u] = numbers[u] > 0 ? v : last[u];
-    const int way = v < last[u] ? last[u] - v : v - last[u];
-    const int known = v < rows[u] ? rows[u] - v : v - rows[u], other = rows[u] < 0 ? kFar : known;
-    rows[u] = (last[u] >= 0) & (way <= kSilhouetteReach) & (way < other) ? last[u] : rows[u];
+    since[u] = rows_since(is_silhouette[u], since[u]);
+    down[u] = static_cast<std::int8_t>(-since[u]);
+  }
+}
+VPM_VECTOR_CLONES
+void take_below(const std::uint8_t* is_silhouette, int width, std::int8_t* since,
+                std::int8_t* down) {
+  for (int u = 0; u < width; ++u) {
+    since[u] = rows_since(is_silhouette[u], since[u]);
+    down[u] = since[u] < -down[u] ? since[u] : down[u];
   }
 }
 
-// Returns for each pixel the row of the nearest silhouette pixel in its column within
-// kSilhouetteReach, above before below; -1 where there is none. `numbers` holds for each pixel its
-// number as a silhouette pixel, or 0.
-std::vector<int> nearest_rows(const std::vector<std::uint32_t>& numbers, int width, int height) {
+// Returns for each pixel how many rows below it, or above where negative, the nearest silhouette
+// pixel in its column is, above before below; -kFarRows where none is within kSilhouetteReach.
+std::vector<std::int8_t> rows_down(const std::vector<std::uint8_t>& is_silhouette, int width,
+                                   int height) {
   const auto columns = static_cast<std::size_t>(width);
-  std::vector<int> rows(numbers.size(), -1);
-  std::vector<int> last(columns, -1);
-  const auto take = [&](int v) {
-    const std::size_t first = static_cast<std::size_t>(v) * columns;
-    take_last_rows(numbers.data() + first, v, width, last.data(), rows.data() + first);
-  };
-  for (int v = 0; v < height; ++v) take(v);
-  std::fill(last.begin(), last.end(), -1);
-  for (int v = height - 1; v >= 0; --v) take(v);
-  return rows;
+  std::vector<std::int8_t> down(is_silhouette.size());
+  std::vector<std::int8_t> since(columns, kFarRows);
+  const auto first = [&](int v) { return static_cast<std::size_t>(v) * columns; };
+  for (int v = 0; v < height; ++v)
+    take_above(is_silhouette.data() + first(v), width, since.data(), down.data() + first(v));
+  std::fill(since.begin(), since.end(), kFarRows);
+  for (int v = height - 1; v >= 0; --v)
+    take_below(is_silhouette.data() + first(v), width, since.data(), down.data() + first(v));
+  return down;
 }
 
 // Offers what stands in a column, by its key, to the pixels [first, last] of a row.
@@ -192,15 +245,15 @@ class NearestInRow {
     }
   }
 
-  // Takes the row's nearest_rows(). Calls take(u, column) for each pixel that has one.
+  // Takes the row's rows_down(). Calls take(u, column) for each pixel that has one.
   template <class Take>
-  void run(const int* rows, int v, const Take& take) {
+  void run(const std::int8_t* down, const Take& take) {
     std::fill(keys_.begin(), keys_.end(), kNone);
     bool any = false;
     for (int u = 0; u < width_; ++u) {
-      if (rows[u] < 0) continue;
+      if (down[u] == -kFarRows) continue;
       any = true;
-      spread(u, rows[u] - v);
+      spread(u, down[u]);
     }
     for (int u = 0; any && u < width_; ++u) {
       const std::int32_t key = keys_[static_cast<std::size_t>(u)];
@@ -229,6 +282,16 @@ class NearestInRow {
   std::vector<std::int32_t> keys_;  // squared distance and column
 };
 
+// Sets the marks of tiles that have a number in a row of pixels to 1.
+void mark_tiles(const std::uint32_t* numbers, int width, std::uint32_t* marks) {
+  constexpr int kTile = 1 << Silhouettes::kTileShift;
+  for (int first = 0; first < width; first += kTile, ++marks) {
+    std::uint32_t any = 0;
+    for (int u = first; u < std::min(first + kTile, width); ++u) any |= numbers[u];
+    *marks |= any != 0 ? 1U : 0U;
+  }
+}
+
 }  // namespace
 
 ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
@@ -247,21 +310,24 @@ ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
 
 void ImageSilhouettes::find_nearest(const DepthSampler& image) {
   const auto columns = static_cast<std::size_t>(image.width);
-  std::vector<std::uint32_t> numbers(nearest_.size(), 0);
+  std::vector<std::uint8_t> is_silhouette(nearest_.size(), 0);
+  // Of silhouette pixels only: the others are not read.
+  const auto numbers = std::make_unique_for_overwrite<std::uint32_t[]>(nearest_.size());
   for (std::size_t k = 0; k < pixels_.size(); ++k) {
-    const auto u = static_cast<std::size_t>(pixels_[k].u),
-               v = static_cast<std::size_t>(pixels_[k].v);
-    numbers[v * columns + u] = static_cast<std::uint32_t>(k + 1);
+    const std::size_t at =
+        static_cast<std::size_t>(pixels_[k].v) * columns + static_cast<std::size_t>(pixels_[k].u);
+    is_silhouette[at] = 1;
+    numbers[at] = static_cast<std::uint32_t>(k + 1);
   }
-  const std::vector<int> rows = nearest_rows(numbers, image.width, image.height);
+  const std::vector<std::int8_t> down = rows_down(is_silhouette, image.width, image.height);
   for_bands(image.height, [&](int begin, int end) {
     NearestInRow nearest(image.width, image.k.fx / image.k.fy);
     for (int v = begin; v < end; ++v) {
       const std::size_t first = static_cast<std::size_t>(v) * columns;
-      nearest.run(rows.data() + first, v, [&](int u, int column) {
+      nearest.run(down.data() + first, [&](int u, int column) {
         const auto at = static_cast<std::size_t>(column);
-        nearest_[first + static_cast<std::size_t>(u)] =
-            numbers[static_cast<std::size_t>(rows[first + at]) * columns + at];
+        const auto row = static_cast<std::size_t>(v + down[first + at]);
+        nearest_[first + static_cast<std::size_t>(u)] = numbers[row * columns + at];
       });
     }
   });
@@ -274,18 +340,12 @@ void ImageSilhouettes::sum_tiles(int width, int height) {
   const std::size_t columns = tiles(width) + 1, rows = tiles(height) + 1;
   columns_ = static_cast<std::int32_t>(columns);
   sums_.assign(columns * rows, 0);
-  std::size_t pixel = 0;
-  for (std::size_t v = 0; v < static_cast<std::size_t>(height); ++v) {
-    std::uint32_t* const row = sums_.data() + ((v >> Silhouettes::kTileShift) + 1) * columns + 1;
-    for (std::size_t u = 0; u < static_cast<std::size_t>(width); ++u)
-      row[u >> Silhouettes::kTileShift] |= nearest_[pixel++] != 0 ? 1U : 0U;
-  }
-  for (std::size_t k = 0; k < holes_.numbers().size(); ++k) {
-    const std::size_t v = k / static_cast<std::size_t>(width),
-                      u = k % static_cast<std::size_t>(width);
-    if (holes_.numbers()[k] != 0)
-      sums_[((v >> Silhouettes::kTileShift) + 1) * columns + (u >> Silhouettes::kTileShift) + 1] =
-          1;
+  for (int v = 0; v < height; ++v) {
+    const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(width);
+    std::uint32_t* const row =
+        sums_.data() + (static_cast<std::size_t>(v >> Silhouettes::kTileShift) + 1) * columns + 1;
+    mark_tiles(nearest_.data() + first, width, row);
+    if (!holes_.fits().empty()) mark_tiles(holes_.numbers().data() + first, width, row);
   }
   for (std::size_t at = columns + 1; at < sums_.size(); ++at) {
     if (at % columns == 0) continue;
