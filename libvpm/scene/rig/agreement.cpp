@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libvpm/core/median.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/scene/rig/clear_pixel.h"
 
 namespace vpm {
@@ -95,22 +96,25 @@ std::optional<double> deviation_between(const RigCamera& one, const RigCamera& o
 RigAgreement agreement_of(std::span<const RigCamera> cameras) {
   constexpr double kUnknown = -1;
   const std::size_t count = cameras.size();
-  std::vector<std::vector<ClearPixel>> pixels;
+  const auto for_each = [](std::size_t all, const auto& body) {
+    parallel_for(all, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) body(k);
+    });
+  };
+  std::vector<std::vector<ClearPixel>> pixels(count);
+  for_each(count, [&](std::size_t i) { pixels[i] = clear_pixels(cameras[i], kStep); });
   RigAgreement agreement;
   agreement.of_pairs.assign(count * count, kUnknown);
-  for (const RigCamera& camera : cameras) pixels.push_back(clear_pixels(camera, kStep));
-  double largest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i + 1; j < count; ++j) {
-      std::vector<Deviation> deviations;
-      add_deviations(pixels[i], cameras[j], deviations);
-      add_deviations(pixels[j], cameras[i], deviations);
-      if (deviations.size() <= kFewReadings) continue;
-      const double deviation = deviation_of(deviations);
-      agreement.of_pairs[i * count + j] = agreement.of_pairs[j * count + i] = deviation;
-      largest = std::max(largest, deviation);
-    }
-  }
+  for_each(count * count, [&](std::size_t pair) {
+    const std::size_t i = pair / count, j = pair % count;
+    if (i >= j) return;
+    std::vector<Deviation> deviations;
+    add_deviations(pixels[i], cameras[j], deviations);
+    add_deviations(pixels[j], cameras[i], deviations);
+    if (deviations.size() <= kFewReadings) return;
+    agreement.of_pairs[pair] = agreement.of_pairs[j * count + i] = deviation_of(deviations);
+  });
+  const double largest = std::max(0.0, *std::ranges::max_element(agreement.of_pairs));
   const auto pixel = [&](std::size_t i) {
     return 1 / std::min(cameras[i].image.k.fx, cameras[i].image.k.fy);
   };

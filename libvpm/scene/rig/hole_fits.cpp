@@ -4,6 +4,7 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -42,6 +43,10 @@ struct Hole {
 };
 
 constexpr Pixel kBeside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+constexpr Pixel kAround[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+constexpr Pixel operator+(Pixel a, Pixel b) {
+  return {a.u + b.u, a.v + b.v};
+}
 
 // What a pixel is to the search for holes.
 enum Kind : std::uint8_t {
@@ -76,9 +81,11 @@ class HoleSearch {
   // is far from all that was measured.
   template <class Fit>
   void run(const Fit& fit) {
-    for (auto at = std::ranges::find(kinds_, kHole); at != kinds_.end();
-         at = std::find(at, kinds_.end(), kHole)) {
-      const auto index = static_cast<int>(at - kinds_.begin());
+    const std::uint8_t *const first = kinds_.data(), *const end = first + kinds_.size(),
+                              *at = first;
+    const auto next = [&] { return std::memchr(at, kHole, static_cast<std::size_t>(end - at)); };
+    while ((at = static_cast<const std::uint8_t*>(next())) != nullptr) {
+      const auto index = static_cast<int>(at - first);
       take({index % image_.width, index / image_.width}, fit);
     }
   }
@@ -101,7 +108,7 @@ class HoleSearch {
   }
   void add_beside(Pixel own, Hole& hole) {
     for (const Pixel& step : kBeside) {
-      const Pixel at{own.u + step.u, own.v + step.v};
+      const Pixel at = own + step;
       if (!is_inside(at) || kind(at) == kRemoved) {
         hole.is_closed = false;
       } else if (kind(at) == kHole) {
@@ -112,9 +119,8 @@ class HoleSearch {
   }
   // True for a pixel of a closed hole beside one that has measured something.
   bool is_at_rim(Pixel own) {
-    return std::ranges::any_of(kBeside, [&](const Pixel& step) {
-      return kind({own.u + step.u, own.v + step.v}) <= kInRim;
-    });
+    return std::ranges::any_of(kBeside,
+                               [&](const Pixel& step) { return kind(own + step) <= kInRim; });
   }
   // True if each pixel of a closed hole is within kDeepest steps of one that has measured
   // something.
@@ -130,7 +136,7 @@ class HoleSearch {
     for (int step = 1; step < kDeepest; ++step) {
       for (const std::size_t last = reached.size(); next < last; ++next) {
         for (const Pixel& beside : kBeside) {
-          const Pixel at{reached[next].u + beside.u, reached[next].v + beside.v};
+          const Pixel at = reached[next] + beside;
           if (kind(at) == kTaken) reach(at);
         }
       }
@@ -262,8 +268,12 @@ class RimSurfaces {
   RimSurfaces(const DepthSampler& image, const Hole& hole)
       : image_(image), hole_(hole), fit_(image, hole) {
     labels_.assign(std::size_t{kSide} * kSide, kBeyond);
-    for (const Pixel& pixel : hole.pixels) label(pixel) = kHole;
-    for (const Pixel& pixel : hole.rim) label(pixel) = kUnlabelled;
+    inverse_depths_.resize(labels_.size());
+    for (const Pixel& pixel : hole.pixels) label(pixel) = kInHole;
+    for (const Pixel& pixel : hole.rim) {
+      label(pixel) = kUnlabelled;
+      inverse_depths_[place(pixel)] = image.inverse_depth(pixel.u, pixel.v);
+    }
     for (const Pixel& pixel : hole.rim)
       if (label(pixel) == kUnlabelled) add(connected_to(pixel), kSplits);
   }
@@ -297,11 +307,9 @@ class RimSurfaces {
  private:
   static constexpr int kSplits = 2;                     // of pixels that are not smooth together
   static constexpr int kSide = kWidest + 2 * kRim + 2;  // one more pixel all around
-  static constexpr int kBeyond = -1, kHole = -2, kUnlabelled = -3;
+  static constexpr int kBeyond = -1, kInHole = -2, kUnlabelled = -3;
   static constexpr double kShortest = 3;  // pixels
-  static constexpr int kAround = 9;       // pixels about one, and itself
 
-  static Pixel around(Pixel at, int k) { return {at.u + k % 3 - 1, at.v + k / 3 - 1}; }
   std::size_t place(Pixel at) const {
     return static_cast<std::size_t>((at.v - hole_.least.v + kRim + 1) * kSide + at.u -
                                     hole_.least.u + kRim + 1);
@@ -314,11 +322,12 @@ class RimSurfaces {
     std::vector<Pixel> pixels{first};
     label(first) = kBeyond;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const double own = image_.inverse_depth(pixels[i].u, pixels[i].v);
-      for (int k = 0; k < kAround; ++k) {
-        const Pixel at = around(pixels[i], k);
+      const Pixel pixel = pixels[i];
+      const double own = inverse_depths_[place(pixel)];
+      for (const Pixel& step : kAround) {
+        const Pixel at = pixel + step;
         if (label(at) != kUnlabelled) continue;
-        const double other = image_.inverse_depth(at.u, at.v);
+        const double other = inverse_depths_[place(at)];
         if (std::fabs(other - own) > DepthSampler::kJump * std::max(own, other)) continue;
         label(at) = kBeyond;
         pixels.push_back(at);
@@ -351,16 +360,15 @@ class RimSurfaces {
     return parts;
   }
   bool has_around(Pixel at, int label) const {
-    for (int k = 0; k < kAround; ++k)
-      if (label_of(around(at, k)) == label) return true;
-    return false;
+    return std::ranges::any_of(kAround,
+                               [&](const Pixel& step) { return label_of(at + step) == label; });
   }
   std::vector<std::pair<double, double>> meetings_of(std::size_t near, int far) const {
     std::vector<std::pair<double, double>> meetings;
     for (const Pixel& pixel : surfaces_[near].pixels) {
-      if (!has_around(pixel, kHole)) continue;
-      for (int k = 0; k < kAround; ++k) {
-        const Pixel at = around(pixel, k);
+      if (!has_around(pixel, kInHole)) continue;
+      for (const Pixel& step : kAround) {
+        const Pixel at = pixel + step;
         if (label_of(at) == far)
           meetings.emplace_back(0.5 * (pixel.u + at.u), 0.5 * (pixel.v + at.v));
       }
@@ -377,9 +385,21 @@ class RimSurfaces {
   const Hole& hole_;
   SurfaceFit fit_;
   bool is_told_ = true;
+  // Of the hole, its rim and what is about it, row by row; the latter of the rim only.
   std::vector<int> labels_;
+  std::vector<double> inverse_depths_;
   std::vector<RimSurface> surfaces_;
 };
+
+VPM_AVX2_CLONES
+int least_squared_distance(const Pixel* pixels, std::size_t count, Pixel at) {
+  int least = INT_MAX;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int u = pixels[i].u - at.u, v = pixels[i].v - at.v, squared = u * u + v * v;
+    least = squared < least ? squared : least;
+  }
+  return least;
+}
 
 // Tells which surface of its rim goes on at a pixel of a hole: that of the nearest pixel. Where
 // there are two with a border between them, that tells.
@@ -400,22 +420,14 @@ class SurfaceOfPixel {
     std::size_t nearest = 0;
     int least = INT_MAX;
     for (std::size_t k = 0; k < rim_.all().size(); ++k) {
-      const int own = squared_distance(rim_.all()[k], at);
+      const std::vector<Pixel>& pixels = rim_.all()[k].pixels;
+      const int own = least_squared_distance(pixels.data(), pixels.size(), at);
       if (own < least) least = own, nearest = k;
     }
     return nearest;
   }
 
  private:
-  static int squared_distance(const RimSurface& surface, Pixel at) {
-    int least = INT_MAX;
-    for (const Pixel& pixel : surface.pixels) {
-      const int u = pixel.u - at.u, v = pixel.v - at.v;
-      least = std::min(least, u * u + v * v);
-    }
-    return least;
-  }
-
   const RimSurfaces& rim_;
   bool is_first_near_ = true;
   std::optional<Border> border_;
