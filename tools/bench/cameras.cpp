@@ -1,15 +1,20 @@
 // Suite of several cameras around one scene: errors of one to four cameras, as they are and with
-// noise, holes and wrong poses, also after these were registered; and the time of queries.
+// noise, holes and wrong poses, also after these were registered; the time of queries, and that in
+// which four images become ready for them.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
+#include "libvpm/scene/depth_frames.h"
+#include "libvpm/scene/rig/rig_body.h"
 #include "libvpm/setup/registration.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/surface.h"
@@ -247,8 +252,43 @@ std::vector<WayIn> ways_into(const CameraScene& scene, const std::vector<Camera>
 struct Group {
   std::map<std::string, GroupErrors> of_scene;
   GroupErrors all;
-  std::vector<double> microseconds;
+  std::vector<double> microseconds;           // of queries
+  std::vector<double> core_ready, two_ready;  // ms, in which all images become ready
 };
+
+// Makes images ready for queries again and again, as they come from cameras. Adds the time of a
+// core that this takes, and the time that it takes on two.
+void time_preparation(const std::vector<CloudSensor>& images, int runs, Group& group) {
+  std::vector<DepthFrames> frames;
+  for (const auto& [camera, image] : images)
+    frames.emplace_back(
+        DepthFrameOptions{camera.intrinsics, camera.width, camera.height, {}, {}, {}});
+  std::optional<RigBody> rig;  // the last one, as long as nothing replaces it
+  const auto prepare = [&] {
+    std::vector<DepthBody> bodies;
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      std::ranges::copy(images[k].depth.depth, frames[k].metres().begin());
+      bodies.push_back(frames[k].prepare(images[k].camera.to_world));
+    }
+    rig.emplace(std::move(bodies));
+  };
+  const auto milliseconds_of = [&](int threads, const auto& clock) {
+    const ThreadCap cap({}, threads);
+    const double start = clock();
+    prepare();
+    return 1e3 * (clock() - start);
+  };
+  const auto wall_seconds = [] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  };
+  constexpr int kWarmUps = 2;
+  for (int k = 0; k < kWarmUps; ++k) prepare();
+  for (int k = 0; k < runs; ++k) {
+    group.core_ready.push_back(milliseconds_of(1, process_seconds));
+    group.two_ready.push_back(milliseconds_of(2, wall_seconds));
+  }
+}
 
 void measure(const WayIn& path, const AnyBody& body, std::size_t cameras, Group& group) {
   ToolQuery query(path.tool->model, {});
@@ -285,6 +325,8 @@ void measure(const CameraScene& scene, const std::vector<PackedSolid>& tools, in
       for (const WayIn& way_in : all_ways)
         measure(way_in, body, count, groups[{condition.name, count}]);
     }
+    if (!condition.is_registered && condition.off == 0)
+      time_preparation(images, ways, groups[{condition.name, kMostCameras}]);
   }
 }
 
@@ -303,15 +345,22 @@ nlohmann::json to_json(const std::string& condition, std::size_t count, const Gr
   result["condition"] = condition;
   result["cameras"] = count;
   result["query_us"] = spread_of(group.microseconds).median;
+  if (!group.core_ready.empty()) {
+    result["ready_core_ms"] = spread_of(group.core_ready).median;
+    result["ready_two_cores_ms"] = spread_of(group.two_ready).median;
+  }
   for (const auto& [scene, errors] : group.of_scene) result["scenes"][scene] = to_json(errors);
   return result;
 }
 
 std::string line_of(const std::string& condition, std::size_t count, const Group& group) {
-  char line[160];
-  std::snprintf(line, sizeof line, "%-17s %zu  %6.3f %6.2f  %5.1f  %5.0f\n", condition.c_str(),
+  char line[160], ready[80] = "";
+  if (!group.core_ready.empty())
+    std::snprintf(ready, sizeof ready, "  %5.1f %5.1f", spread_of(group.core_ready).median,
+                  spread_of(group.two_ready).median);
+  std::snprintf(line, sizeof line, "%-17s %zu  %6.3f %6.2f  %5.1f  %5.0f%s\n", condition.c_str(),
                 count, 100 * group.all.volume.mean(), 100 * group.all.volume_worst.worst(),
-                group.all.direction.mean(), spread_of(group.microseconds).median);
+                group.all.direction.mean(), spread_of(group.microseconds).median, ready);
   return line;
 }
 
@@ -343,7 +392,8 @@ Report run_cameras(const SuiteOptions& options) {
                           "jump_worst",
                           "direction_mean_degrees"};
   report.summary =
-      "condition, cameras; volume, % of the tool: mean, worst; direction, degrees; us\n";
+      "condition, cameras; volume, % of the tool: mean, worst; direction, degrees; query, us; "
+      "ready, ms of a core, and on two\n";
   for (const auto& [key, group] : groups) {
     const auto& [condition, count] = key;
     report.results.push_back(to_json(condition, count, group));
