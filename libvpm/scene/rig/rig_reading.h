@@ -41,13 +41,22 @@ struct RigReader {
   template <class Place>
   [[gnu::always_inline]] static VPM_HD void read(const RigCamera& camera, const Place& x,
                                                  RigReading<RealOf<Place>>& reading) {
+    read_measured(camera, x, reading);
+    if (camera.silhouettes.holes.numbers == nullptr) return;
+    reading.nearer = RealOf<Place>{};
+    if (!all(reading.is_measured)) read_hole(camera, camera.from_rig * x, reading);
+  }
+
+  // Reads that where the camera has measured something; elsewhere nothing is known.
+  template <class Place>
+  [[gnu::always_inline]] static VPM_HD void read_measured(const RigCamera& camera, const Place& x,
+                                                          RigReading<RealOf<Place>>& reading) {
     using Real = RealOf<Place>;
     const Place at = camera.from_rig * x;
     const SurfaceSampleOf<Real> seen =
         camera.image.sample_and(at, [](const IntOf<Real>&, const IntOf<Real>&) {});
     const Real zero{};
     reading.known = reading.is_measured = seen.known;
-    if (!any(seen.known) && camera.silhouettes.holes.numbers == nullptr) return;
     reading.is_silhouette = MaskOf<Real>{};
     reading.distance = seen.known ? seen.distance : zero;
     reading.depth = at.z;
@@ -55,10 +64,6 @@ struct RigReader {
     reading.below = seen.known ? at.z - seen.foot.z : zero;
     reading.normal = choose(seen.known, seen.normal, Place{zero, zero, zero});
     reading.pixel = static_cast<IntOf<Real>>(seen.point);
-    if (camera.silhouettes.holes.numbers != nullptr) {
-      reading.nearer = zero;
-      if (!all(seen.known)) read_hole(camera, at, reading);
-    }
     if (any(seen.known)) read_silhouette(camera, at, reading);
   }
 

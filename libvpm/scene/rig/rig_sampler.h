@@ -65,8 +65,16 @@ struct RigSampler {
     const std::int32_t found = read_all(x, some, readings, knowledge);
     is_decided = knowledge.is_decided;
     if (found == 0) return on_surface;
-    on_surface.known = knowledge.is_measured | knowledge.is_fitted;
     Nearest<Real> nearest = nearest_of(readings, found);
+    const MaskOf<Real> is_clear =
+        is_clearly_before(nearest, enough) | is_clearly_behind(nearest, enough, deepest);
+    // Most places with fits need none.
+    if (any(nearest.has_fits) &&
+        any((knowledge.is_measured | nearest.has_fits) & negated(is_clear))) {
+      settle_fits(x, some == all_cameras(), readings, found, knowledge);
+      nearest = nearest_of(readings, found);
+    }
+    on_surface.known = knowledge.is_measured | knowledge.is_fitted;
     // Behind a fit where nobody has measured anything, its normal is the way out.
     const MaskOf<Real> is_behind =
         negated(knowledge.is_fitted) & is_clearly_behind(nearest, enough, deepest);
@@ -164,7 +172,6 @@ struct RigSampler {
                                                       RigReading<RealOf<Place>>* readings,
                                                       Knowledge<RealOf<Place>>& knowledge) const {
     std::int32_t found = 0;
-    MaskOf<RealOf<Place>> has_fits{};
     for (std::int32_t i = 0; i < count; ++i) {
       if ((some >> i & 1) == 0) continue;
       RigReading<RealOf<Place>>& reading = readings[found];
@@ -172,12 +179,10 @@ struct RigSampler {
       if (!any(reading.known)) continue;
       reading.camera = i;
       knowledge.is_measured |= reading.is_measured;
-      has_fits |= reading.known & negated(reading.is_measured);
       knowledge.is_decided |= reading.is_measured & negated(is_well_before(reading));
       ++found;
     }
     leave_out_hidden(knowledge.is_decided, readings, found);
-    if (any(has_fits)) settle_fits(x, some == all_cameras(), readings, found, knowledge);
     return found;
   }
   template <class Real>
@@ -202,11 +207,11 @@ struct RigSampler {
       RigReading<Real>& fit = readings[k];
       const Mask is_fit = fit.known & negated(fit.is_measured);
       if (!any(is_fit)) continue;
-      leave_out_contradicted(x, is_fit, k, readings, found);
       const Mask is_before = is_fit & knowledge.is_measured & (fit.distance > 0);
       fit.distance = is_before ? fit.distance - fit.nearer : fit.distance;
       fit.known &=
           negated(is_fit) | (is_before & (fit.distance > 0)) | (negated(is_before) & is_open);
+      leave_out_contradicted(x, is_fit & fit.known, k, readings, found);
       const Mask is_taken = is_fit & fit.known & is_open;
       knowledge.is_fitted |= is_taken;
       is_decided |= is_taken & negated(is_well_before(fit));
@@ -248,19 +253,20 @@ struct RigSampler {
   // Describes the surface that is nearest to a place, of those that cameras show.
   template <class Real>
   struct Nearest {
-    Real length, distance;    // m; the first is not negative
-    Real greatest;            // m, of all distances
-    Real half_pixel;          // m, of its camera
-    Real apart;               // m; readings further apart are of two surfaces
-    MaskOf<Real> is_free{};   // where a camera has the place before its surface
-    MaskOf<Real> has_fits{};  // where one reads the fit of a hole
-    PlaceOf<Real> normal;     // set by weigh()
+    Real length, distance;        // m; the first is not negative
+    Real greatest;                // m, of all distances
+    Real half_pixel;              // m, of its camera
+    Real apart;                   // m; readings further apart are of two surfaces
+    MaskOf<Real> is_free{};       // where a camera has the place before its surface
+    MaskOf<Real> is_seen_free{};  // and that is no silhouette
+    MaskOf<Real> has_fits{};      // where one reads the fit of a hole
+    PlaceOf<Real> normal;         // set by weigh()
   };
   template <class Real>
   [[gnu::always_inline]] VPM_HD Nearest<Real> nearest_of(const RigReading<Real>* readings,
                                                          std::int32_t found) const {
     const Real zero{};
-    Nearest<Real> nearest{zero + HUGE_VAL,   zero, zero - HUGE_VAL, zero, zero, {}, {},
+    Nearest<Real> nearest{zero + HUGE_VAL,   zero, zero - HUGE_VAL, zero, zero, {}, {}, {},
                           {zero, zero, zero}};
     Real depth = zero;
     for (std::int32_t k = 0; k < found; ++k) {
@@ -273,7 +279,9 @@ struct RigSampler {
       nearest.half_pixel = is_nearer ? half_pixel(reading) : nearest.half_pixel;
       nearest.greatest =
           is_measured & (reading.distance > nearest.greatest) ? reading.distance : nearest.greatest;
-      nearest.is_free |= is_measured & (reading.distance > 0);
+      const MaskOf<Real> is_free = is_measured & (reading.distance > 0);
+      nearest.is_free |= is_free;
+      nearest.is_seen_free |= is_free & negated(reading.is_silhouette);
       nearest.has_fits |= reading.known & negated(reading.is_measured);
       depth = reading.known & (reading.depth > depth) ? reading.depth : depth;
     }
@@ -287,11 +295,13 @@ struct RigSampler {
   }
   // True where the greatest mean is surely more than `enough`: a camera has the place before its
   // surface, and no surface is so near that its reading, bound or not, is averaged with one behind.
-  // Fits of holes are averaged with silhouettes however near they are.
+  // Fits of holes are averaged with silhouettes however near they are, but not with what is seen.
   template <class Real>
   [[gnu::always_inline]] static VPM_HD MaskOf<Real> is_clearly_before(const Nearest<Real>& nearest,
                                                                       const Real& enough) {
-    return nearest.is_free & negated(nearest.has_fits) & (nearest.length > kRounding * enough) &
+    const MaskOf<Real> is_free =
+        nearest.is_seen_free | (nearest.is_free & negated(nearest.has_fits));
+    return is_free & (nearest.length > kRounding * enough) &
            (2 * nearest.length > kRounding * nearest.apart);
   }
 
@@ -439,8 +449,7 @@ struct RigSampler {
     Real least = Real{} + HUGE_VAL, depth{};
     for (std::int32_t i = 0; i < count; ++i) {
       RigReading<Real>& way = ways[found];
-      RigReader::read(cameras[i], x, way);
-      way.known &= way.is_measured;
+      RigReader::read_measured(cameras[i], x, way);
       if (!any(way.known)) continue;
       way.distance = way.distance < 0 ? -way.distance : Real{};  // free, but for disagreement
       least = way.known & (way.distance < least) ? way.distance : least;
