@@ -105,15 +105,44 @@ TEST_F(Rig, OrderOfCamerasAndOneTwiceChangeNoBit) {
   EXPECT_GT(most, 0.8);
 }
 
-// Returns a rig of so many cameras whose images have holes.
-RigBody rig_with_holes(const synthetic::Surface& surface, int count) {
+// Returns what cameras see, each with holes of its own.
+std::vector<DepthBody> images_with_holes(const synthetic::Surface& surface,
+                                         const std::vector<Camera>& cameras) {
   std::vector<DepthBody> images;
-  for (const Camera& camera : with_larger_pixels(ring_of_cameras(count), 2, 2)) {
+  for (const Camera& camera : cameras) {
     DepthImage image = synthetic::render(surface, camera);
     make_holes(image, images.size() + 1);
     images.emplace_back(make_cloud(image, camera, {}));
   }
-  return RigBody(std::move(images));
+  return images;
+}
+RigBody rig_with_holes(const synthetic::Surface& surface, int count) {
+  return RigBody(images_with_holes(surface, with_larger_pixels(ring_of_cameras(count), 2, 2)));
+}
+
+// Two of the images are of one camera, and differ in their holes only.
+TEST(RigOfAnyScene, OrderOfImagesWithHolesChangesNoBit) {
+  std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(3), 2, 2);
+  cameras.push_back(cameras.front());
+  const std::vector<DepthBody> images = images_with_holes(*scene(), cameras);
+  const ToolModel tool = testing::lattice_cube(0.1, 4, 3);
+  ToolQuery query(tool, {});
+  const std::vector<Vec3> all = places(5, 0.12);
+  const auto answers = [&](const std::vector<std::size_t>& order) {
+    std::vector<DepthBody> ordered;
+    for (const std::size_t k : order) ordered.push_back(images[k]);
+    const AnyBody rig(RigBody(std::move(ordered)));
+    std::vector<Result> results;
+    for (const Vec3& at : all) results.push_back(query.run(rig, {testing::generic_rotation(), at}));
+    return results;
+  };
+  std::vector<std::size_t> order{0, 1, 2, 3};
+  const std::vector<Result> expected = answers(order);
+  EXPECT_GT(expected.front().volume_fraction, 0.1);
+  while (std::ranges::next_permutation(order).found) {
+    const std::vector<Result> found = answers(order);
+    for (std::size_t k = 0; k < all.size(); ++k) testing::expect_equal(expected[k], found[k]);
+  }
 }
 
 // Counts balls by what is told of them, and expects it of places in them.
