@@ -15,6 +15,8 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/scene/frame_preparation.h"
+#include "libvpm/solid/depth_remover.h"
+#include "libvpm/solid/solid_surface.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
@@ -119,7 +121,7 @@ class Timing {
     report_.summary += line + text;
     if (options_.progress) {
       const double recorded = options_.data.empty() ? 0 : 1;
-      const double stages = 7 + recorded + (11 + 3 * recorded) * static_cast<double>(sizes_.size());
+      const double stages = 9 + recorded + (11 + 3 * recorded) * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -146,6 +148,31 @@ class Timing {
     };
     time_frame("frame, all at once", Denoising::on);
     time_frame("frame, all at once, as measured", Denoising::off);
+    time_removal(depth);
+  }
+
+  // Times how the links of an arm before the wall are taken out of the frame.
+  void time_removal(const DepthImage& seen) {
+    constexpr int kLinks = 7;
+    constexpr double kMargins[] = {0, 0.02};  // m
+    const Solid link = synthetic::make_torus(0.05, 0.025, 100, 50);
+    const auto surface = std::make_shared<const SolidSurface>(link, false);
+    DepthRemover remover(std::vector<std::shared_ptr<const SolidSurface>>(kLinks, surface));
+    for (const double margin : kMargins) {
+      std::vector<SolidPlace> places;
+      for (int k = 0; k < kLinks; ++k) {
+        const Pose to_camera{rotation_from_vector({0.3 * k, 0.2 * k, 0.1}),
+                             {0.09 * k - 0.27, 0.04 * k - 0.12, 0.65 + 0.02 * k}};
+        places.push_back({scene_.camera.to_world * to_camera, margin});
+      }
+      char stage[80];
+      std::snprintf(stage, sizeof stage, "%d links of %zu triangles taken out, margin %g mm",
+                    kLinks, link.triangles.size(), 1e3 * margin);
+      time(stage, 0, runs_.fast, [&] {
+        DepthImage depth = seen;
+        remover.remove(places, scene_.camera, depth.depth);
+      });
+    }
   }
 
   // Prepares recorded rooms and random poses in them, since a query's time depends on what is near.

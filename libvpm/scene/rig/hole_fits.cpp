@@ -5,6 +5,7 @@
 #include <climits>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -204,7 +205,8 @@ class SurfaceFit {
   SurfaceFit(const DepthSampler& image, const Hole& hole)
       : image_(image), u_(hole.middle_u()), v_(hole.middle_v()) {}
 
-  std::optional<HoleFit> of(const std::vector<Pixel>& pixels) const {
+  // Returns the paraboloid, or plane, that is nearest to pixels.
+  std::optional<Numbers> nearest_to(const std::vector<Pixel>& pixels) const {
     if (pixels.size() < kFew) return std::nullopt;
     std::array<Numbers, 6> matrix{};
     Numbers pull{};
@@ -215,15 +217,24 @@ class SurfaceFit {
         for (std::size_t k = 0; k < terms.size(); ++k) matrix[i][k] += terms[i] * terms[k];
       }
     }
-    const auto found = solution(matrix, pull, pixels.size() < kFewForCurvature ? 3 : 6);
+    return solution(matrix, pull, pixels.size() < kFewForCurvature ? 3 : 6);
+  }
+  // Returns by how much a paraboloid is nearer than a pixel.
+  double off(const Numbers& paraboloid, Pixel pixel) const {
+    const Numbers terms = terms_at(pixel);
+    double off = -inverse_depth(pixel);
+    for (std::size_t i = 0; i < terms.size(); ++i) off += terms[i] * paraboloid[i];
+    return off;
+  }
+
+  std::optional<HoleFit> of(const std::vector<Pixel>& pixels) const {
+    const auto found = nearest_to(pixels);
     if (!found) return std::nullopt;
     double squares = 0;
     for (const Pixel& pixel : pixels) {
-      const Numbers terms = terms_at(pixel);
-      double off = -inverse_depth(pixel);
-      for (std::size_t i = 0; i < terms.size(); ++i) off += terms[i] * (*found)[i];
-      if (!(std::fabs(off) <= DepthSampler::kJump * inverse_depth(pixel))) return std::nullopt;
-      squares += off * off;
+      const double away = off(*found, pixel);
+      if (!(std::fabs(away) <= DepthSampler::kJump * inverse_depth(pixel))) return std::nullopt;
+      squares += away * away;
     }
     const double nearer = kNearerBy * std::sqrt(squares / static_cast<double>(pixels.size()));
     const auto number = [&](std::size_t k) { return static_cast<float>((*found)[k]); };
@@ -261,8 +272,8 @@ struct RimSurface {
   HoleFit fit;
 };
 
-// The surfaces in the rim of a hole: pixels that steps of less than kJump connect, or those of them
-// that face one of two ways where together they are not smooth.
+// The surfaces in the rim of a hole: pixels that steps of less than kJump connect, or two parts of
+// them on either side of a crease.
 class RimSurfaces {
  public:
   RimSurfaces(const DepthSampler& image, const Hole& hole)
@@ -275,7 +286,7 @@ class RimSurfaces {
       inverse_depths_[place(pixel)] = image.inverse_depth(pixel.u, pixel.v);
     }
     for (const Pixel& pixel : hole.rim)
-      if (label(pixel) == kUnlabelled) add(connected_to(pixel), kSplits);
+      if (label(pixel) == kUnlabelled) add(surfaces_of(connected_to(pixel), kSplits, is_told_));
   }
 
   // True if the rim tells what goes on in the hole: it has surfaces, and all of them are smooth.
@@ -306,6 +317,8 @@ class RimSurfaces {
 
  private:
   static constexpr int kSplits = 2;                     // of pixels that are not smooth together
+  static constexpr int kRounds = 3;                     // in which parts find their surfaces
+  static constexpr double kMuchNearer = 0.5;            // part of a deviation
   static constexpr int kSide = kWidest + 2 * kRim + 2;  // one more pixel all around
   static constexpr int kBeyond = -1, kInHole = -2, kUnlabelled = -3;
   static constexpr double kShortest = 3;  // pixels
@@ -335,19 +348,43 @@ class RimSurfaces {
     }
     return pixels;
   }
-  // Adds the surface of pixels, or those of two parts of them. Too few pixels are of none.
-  void add(std::vector<Pixel> pixels, int splits) {
-    if (pixels.size() < kFew) return;
-    if (const auto fit = fit_.of(pixels)) {
-      for (const Pixel& pixel : pixels) label(pixel) = static_cast<int>(surfaces_.size());
-      surfaces_.push_back({std::move(pixels), *fit});
-    } else if (splits > 0) {
-      for (std::vector<Pixel>& half : halves(pixels)) add(std::move(half), splits - 1);
-    } else {
-      is_told_ = false;
+  void add(std::vector<RimSurface> found) {
+    for (RimSurface& surface : found) {
+      for (const Pixel& pixel : surface.pixels) label(pixel) = static_cast<int>(surfaces_.size());
+      surfaces_.push_back(std::move(surface));
     }
   }
-  // Divides pixels by which of two normals, that differ much, theirs is more like.
+  // Returns the surface of pixels, or those of two parts of them where together they are not
+  // smooth, or only roughly: the parts must then be twice as near to their fits. Too few pixels are
+  // of none. `is_told` becomes false if a part is not smooth either.
+  std::vector<RimSurface> surfaces_of(std::vector<Pixel> pixels, int splits, bool& is_told) const {
+    if (pixels.size() < kFew) return {};
+    const std::optional<HoleFit> whole = fit_.of(pixels);
+    if (splits > 0 && (!whole || is_rough(*whole))) {
+      bool are_told = true;
+      std::vector<RimSurface> found;
+      for (std::vector<Pixel>& part : halves(pixels))
+        std::ranges::move(surfaces_of(std::move(part), splits - 1, are_told),
+                          std::back_inserter(found));
+      double squares = 0;
+      for (const RimSurface& surface : found) squares += squares_of(surface.pixels, surface.fit);
+      if (!whole ||
+          (are_told && squares < kMuchNearer * kMuchNearer * squares_of(pixels, *whole))) {
+        is_told = is_told && are_told;
+        return found;
+      }
+    }
+    if (whole) return {{std::move(pixels), *whole}};
+    is_told = false;
+    return {};
+  }
+  static double squares_of(const std::vector<Pixel>& pixels, const HoleFit& fit) {
+    return static_cast<double>(pixels.size()) * fit.nearer * fit.nearer;
+  }
+  // True if pixels deviate from their fit by more than the width of one, as across a crease.
+  bool is_rough(const HoleFit& fit) const { return fit.nearer > kNearerBy * fit.a / image_.k.fx; }
+  // Divides pixels by which of two normals, that differ much, theirs is more like; then by which of
+  // the surfaces of both parts is nearer, since normals at a crease are between those of its sides.
   std::array<std::vector<Pixel>, 2> halves(const std::vector<Pixel>& pixels) const {
     const auto least_like = [&](const Vec3& other) {
       return normal(*std::ranges::min_element(
@@ -357,6 +394,15 @@ class RimSurfaces {
     std::array<std::vector<Pixel>, 2> parts;
     for (const Pixel& pixel : pixels)
       parts[dot(normal(pixel), one - other) < 0 ? 1 : 0].push_back(pixel);
+    for (int k = 0; k < kRounds; ++k) {
+      const auto first = fit_.nearest_to(parts[0]), second = fit_.nearest_to(parts[1]);
+      if (!first || !second) break;
+      parts = {};
+      for (const Pixel& pixel : pixels) {
+        const double off = fit_.off(*first, pixel), other_off = fit_.off(*second, pixel);
+        parts[std::fabs(other_off) < std::fabs(off) ? 1 : 0].push_back(pixel);
+      }
+    }
     return parts;
   }
   bool has_around(Pixel at, int label) const {
