@@ -373,6 +373,8 @@ def cameras(report):
                                 f"{percent(of[name, counts[-1]]['scenes'][scene]['volume_worst'], 2)}" for scene in scenes]
                       for name, text in names.items()])
     ready = [name for name in names if "ready_core_ms" in of.get((name, counts[-1]), {})]
+    if not ready:  # a report without these times
+        return f"{most}\n\n{by_scene}"
     times = table([f"{counts[-1]} images of 640×480 from raw depth to ready, median, ms"] + [names[name] for name in ready],
                   [[text] + [f"{of[name, counts[-1]][field]:.0f}" for name in ready]
                    for text, field in (("time of a core", "ready_core_ms"), ("on two cores", "ready_two_cores_ms"))])
