@@ -13,9 +13,18 @@ namespace vpm {
 namespace {
 
 // Largest pieces: the radius of whole ones relative to the reach, half their
-// slab's thickness relative to the depth, and the longest edge of triangles and
-// cells of triangles relative to the reach.
-constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.12;
+// slab's thickness relative to the depth, and the longest edge relative to the
+// reach, of triangles and cells of triangles and of crossed triangles as a whole.
+constexpr double kPatchRadius = 1.0 / 16, kPatchThickness = 0.5, kCell = 0.17, kCrossed = 0.12;
+// Pieces may be so many times as large at most where a surface's force counts little.
+constexpr double kMostEasier = 16;
+// Volume relative to the cubed reach below which a solid is thin: forces on its two sides nearly
+// cancel out, so that cells must be smaller, but not by more than this factor.
+constexpr double kThin = 0.5, kLeastOfThin = 0.5;
+// How the depth bends in a piece is told from the other's grid at the corners, as far as it is so
+// many of its cells deep, and fully a quarter of a cell deeper; but only in pieces this many times
+// as long as its cells, since it errs by a quarter of a cell at creases.
+constexpr double kTrustedCells = 1, kTrusted = 4, kBendingCells = 4.25;
 // Where the other solid's planes cut a piece, the depth in it is taken below their mean plane if
 // they agree: if the squared length of the mean of their unit normals is less than 1 by no more
 // than this. Where they disagree the other solid has a crease.
@@ -48,6 +57,30 @@ double square(double v) {
 double share_below(double limit, double v, double part = kMixedErrors) {
   if (v <= part * limit) return 1;
   return v < limit ? (limit - v) / (limit - part * limit) : 0;
+}
+
+// Returns the mean over a piece of the depth less `linear`, which is its tangent at the middle of
+// the piece: a triangle with these corners, or a part of it. It is taken from the grid's depths at
+// the corners by the rule that is right where the depth bends evenly. All in one frame, which
+// `to_other` maps to the other solid's.
+double mean_bend(const SolidSurface& other, const Pose& to_other,
+                 const std::array<Vec3, 3>& corners, Vec3 middle, const Depth& linear) {
+  const auto& [a, b, c] = corners;
+  const Vec3 normal = cross(b - a, c - a);
+  const double normal2 = squared_norm(normal), per_cell = 1 / other.grid_cell();
+  if (!(normal2 > 0)) return 0;
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double depth = other.grid_depth(to_other * corners[k]);
+    const double trust = std::clamp(kTrusted * (per_cell * depth - kTrustedCells), 0.0, 1.0);
+    if (!(trust > 0)) continue;
+    const Vec3 p = corners[(k + 1) % 3] - middle, q = corners[(k + 2) % 3] - middle;
+    // Barycentric coordinate of the middle; in slivers rounding may tell more.
+    const double part = std::clamp(dot(cross(p, q), normal) / normal2, 0.0, 1.0);
+    const double foretold = linear.value + dot(linear.gradient, corners[k] - middle);
+    sum += part * trust * (depth - foretold);
+  }
+  return sum / 4;
 }
 
 // Returns the force on what is below a node, where the depth is linear: `depth` at the place x.
@@ -115,9 +148,25 @@ double SurfacePair::depth_of_largest() {
   return areas > 0 ? sum / areas / 2 : 0;
 }
 
+// Sets how large pieces of a surface may be, by the shapes and volumes of both solids alone: so
+// forces do not jump at other sizes.
+void SurfacePair::set_sizes(Role& role, const SolidSurface& other) {
+  const double reach = role.solid->reach(), ratio = role.solid->volume() / other.volume();
+  // The depth below the other counts by the square of its volume (shared_of in solid_pair.cpp).
+  role.ease = std::max(ratio * ratio, 1.0);
+  const double size = std::min(std::sqrt(std::max(ratio, 1.0)), kMostEasier) * reach;
+  const double thinness = role.solid->volume() / (kThin * reach * reach * reach);
+  const double of_thin = std::clamp(std::sqrt(std::sqrt(thinness)), kLeastOfThin, 1.0);
+  role.largest_patch = kPatchRadius * size;
+  role.largest_cell = kCell * of_thin * size;
+  role.largest_crossed = kCrossed * of_thin * size;
+  role.largest_judged = kCrossed * size;
+}
+
 // Returns how far an error of the integral over an area may stay.
-double SurfacePair::share_of_precise(double error, double area) const {
-  return share_below(std::max(precision_.depth * area, precision_.product), error);
+double SurfacePair::share_of_precise(std::size_t which, double error, double area) const {
+  return share_below(std::max(precision_.depth * area, precision_.product),
+                     error / roles_[which].ease);
 }
 
 // Adds the forces on all that is inside, after all moments are summed.
@@ -160,7 +209,7 @@ void SurfacePair::add_force_of_whole(std::size_t which, std::uint32_t child) {
 double SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Foretold& foretold) {
   Role& role = roles_[which];
   const SurfaceTree::Patch& patch = role.tree->patches()[node];
-  const double most = kPatchRadius * role.solid->reach();
+  const double most = role.largest_patch;
   if (patch.radius > (precision_.size < 1 ? kForetelling * most : most)) return 0;
   const Vec3 middle = widen(patch.middle);
   Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
@@ -168,9 +217,9 @@ double SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Fo
   depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
   const double error = per_unit_ * std::abs(foretold.at(middle) - depth.value),
                area = per_unit_ * per_unit_ * patch.area;
-  const double share =
-      std::max(share_of_small(patch.radius, most),
-               foretold.is_known ? share_of_precise(foretold.weight * error * area, area) : 0);
+  const double share = std::max(
+      share_of_small(patch.radius, most),
+      foretold.is_known ? share_of_precise(which, foretold.weight * error * area, area) : 0);
   const double weight = share * foretold.weight;
   foretold.depth = depth, foretold.place = middle, foretold.is_known = true;
   if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !(weight > 0))
@@ -195,24 +244,26 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
                                         const Foretold& before) {
   Role& role = roles_[which];
   const std::array<Vec3, 3> corners = role.tree->corners(triangle);
-  const double most = kCell * role.solid->reach(), longest = role.tree->longest_edge(triangle);
+  const double most = role.largest_cell, longest = role.tree->longest_edge(triangle);
   const PlacedTriangle at = placed(role, triangle);
   DepthCell cell{at.corner, {1, 1, 1}, {}, {}};
   for (Vec3& corner : cell.corner) corner = per_unit_ * corner;
   const Vec3 normal = normalized_or_zero(at.normal);
   if (longest > most) return add_force_of_cells(which, cell, normal, before.weight);
   const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
-  Depth depth = roles_[1 - which].solid->depth(role.to_other * middle);
+  const SolidSurface& other = *roles_[1 - which].solid;
+  Depth depth = other.depth(role.to_other * middle);
   ++sums_.depths;
-  const Vec3 gradient = depth.gradient;
-  depth.gradient = transpose(role.to_other.rotation) * gradient;
+  depth.gradient = transpose(role.to_other.rotation) * depth.gradient;
   const double error = per_unit_ * std::abs(before.at(middle) - depth.value),
                area = 0.5 * per_unit_ * per_unit_ * norm(at.normal);
   const double share =
       std::max(share_of_small(longest, most),
-               before.is_known ? share_of_precise(before.weight * error * area, area) : 0);
+               before.is_known ? share_of_precise(which, before.weight * error * area, area) : 0);
   if (share < 1) add_force_of_cells(which, cell, normal, (1 - share) * before.weight);
   if (!(share > 0)) return;
+  if (longest > kBendingCells * other.grid_cell())
+    depth.value += mean_bend(other, role.to_other, corners, middle, depth);
   const ForceAndTorque f = linear_force(corners, depth, middle);
   const double unit3 = share * before.weight * per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
@@ -229,7 +280,7 @@ void SurfacePair::add_force_of_crossed(std::size_t which, const CrossedTriangle&
   for (std::uint32_t k = triangle.last_segment; k != CrossedTriangle::kEnd;
        k = role.segments[k].second)
     cut_segments_.push_back(role.segments[k].first);
-  const double most = precision_.size * kCell * role.solid->reach();
+  const double most = precision_.size * role.largest_crossed;
   if (role.tree->longest_edge(triangle.triangle) <= most) {
     const auto piece = add_force_of_cut(which, triangle, cut_segments_);
     if (piece && with_contacts_) note_force_of_face(which, triangle, *piece);
@@ -257,10 +308,12 @@ class SurfacePair::CellVisitor {
       : pair_(pair),
         role_(role),
         normal_(normal),
-        most2_(square(pair.per_unit_ * kCell * pair.roles_[role].solid->reach())),
-        sampled2_(most2_),
-        small2_(std::max(square(pair.precision_.size) * most2_, square(pair.precision_.smallest))) {
-    if (pair.precision_.size < 1) sampled2_ *= square(kForetelling), small_part_ = kMixedSizes;
+        most2_(square(pair.per_unit_ * pair.roles_[role].largest_judged)),
+        sampled2_(square(pair.per_unit_ * pair.roles_[role].largest_cell)),
+        small2_(
+            std::max(square(pair.precision_.size) * sampled2_, square(pair.precision_.smallest))) {
+    if (pair.precision_.size < 1)
+      sampled2_ = square(kForetelling) * most2_, small_part_ = kMixedSizes;
   }
 
   bool is_too_large(const DepthCell& cell) const { return cell.longest_edge2() > sampled2_; }
@@ -301,7 +354,8 @@ class SurfacePair::CellVisitor {
   }
 
   bool is_negligible(const Value& value, double weight) const {
-    return weight * value.area * std::abs(value.sampled.depth.value) <= pair_.precision_.product;
+    return weight * value.area * std::abs(value.sampled.depth.value) <=
+           pair_.roles_[role_].ease * pair_.precision_.product;
   }
 
   double agreement(Value& value, const Value& first, const Value& second, double weight) const {
@@ -312,11 +366,12 @@ class SurfacePair::CellVisitor {
     const double size = norm(first.sampled.place - second.sampled.place);
     const double error = std::max(std::abs(more), kShift * norm(shift) / size);
     value.integral = sum;
-    const Precision& precision = pair_.precision_;
     const double least = std::min(first.area, second.area) / kLeastHalf;
-    return std::min(
-        {pair_.share_of_precise(weight * error, value.area), 1 - share_below(value.area, least),
-         value.is_large ? share_below(kShallow * precision.mean, value.sampled.depth.value) : 1});
+    return std::min({pair_.share_of_precise(role_, weight * error, value.area),
+                     1 - share_below(value.area, least),
+                     value.is_large ? share_below(kShallow * pair_.precision_.mean,
+                                                  value.sampled.depth.value, kMixedShallow)
+                                    : 1});
   }
 
   void take(const DepthCell& cell, const Value& value, double weight) {
@@ -336,8 +391,8 @@ class SurfacePair::CellVisitor {
   // times its error.
   static constexpr double kShift = 1;
   // Cells above the largest size may stay where they are not deeper than so
-  // many mean depths.
-  static constexpr double kShallow = 4;
+  // many mean depths; the middle of a slab, whose depth is the mean one, stays as a whole.
+  static constexpr double kShallow = 1.3, kMixedShallow = 0.8;
 
   SurfacePair& pair_;
   std::size_t role_;
@@ -367,8 +422,9 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
   const auto& [a, b, c] = cell.corner;
   LinearPiece piece;
   if (cell.is_whole()) {
-    piece = add_cut_force(which, triangle_force_moments(a, b, c), depth_at(which, (a + b + c) / 3),
-                          weight);
+    piece =
+        add_cut_force(which, triangle_force_moments(a, b, c),
+                      bent(which, cell, depth_at(which, (a + b + c) / 3), (a + b + c) / 3), weight);
   } else {
     CrossedTriangle part;
     part.corner = cell.corner, part.normal = normal;
@@ -378,11 +434,26 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
     const Vec3 middle = part.mean() / area;
     Foretold linear = plane_across(which, cell.segments);
     const double share = share_of_plausible(which, linear, middle);
-    linear = mixed_with_depth(which, linear, share, middle);
+    linear = bent(which, cell, mixed_with_depth(which, linear, share, middle), middle);
     piece = add_cut_force(which, part.moments(), linear, weight);
     piece.middle = middle;
   }
   if (with_contacts_) note_force_of_cell(which, cell, piece, normal);
+}
+
+// Returns a depth that is linear over the part of a cell inside and has the mean of one that bends,
+// given its tangent at the middle of that part.
+SurfacePair::Foretold SurfacePair::bent(std::size_t which, const DepthCell& cell, Foretold linear,
+                                        Vec3 middle) const {
+  const SolidSurface& other = *roles_[1 - which].solid;
+  if (!(cell.longest_edge2() > square(kBendingCells * per_unit_ * other.grid_cell())))
+    return linear;
+  const Pose to_other = which == 0 ? roles_[0].to_other : Pose{};
+  std::array<Vec3, 3> corners = cell.corner;
+  for (Vec3& corner : corners) corner = unit_ * corner;
+  const Depth at_middle{unit_ * linear.at(middle), linear.depth.gradient};
+  linear.depth.value += per_unit_ * mean_bend(other, to_other, corners, unit_ * middle, at_middle);
+  return linear;
 }
 
 // Adds the force on the part of a crossed triangle: below the planes that cross

@@ -26,6 +26,7 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     Role& role = roles_[k];
     role.solid = k == 0 ? &first : &second;
     role.tree = &role.solid->tree();
+    set_sizes(role, k == 0 ? second : first);
     const std::size_t triangles = role.tree->triangles().size();
     role.crossed_stamp.assign(triangles, 0);
     role.crossed_place.assign(triangles, 0);

@@ -135,6 +135,10 @@ class SurfacePair {
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
+    // For forces: how many times as large errors may be here as on the other surface, whose force
+    // counts more; and the largest pieces, m: nodes, cells, crossed triangles as a whole, and cells
+    // that may stay for what samples tell, however deep they are.
+    double ease = 1, largest_patch = 0, largest_cell = 0, largest_crossed = 0, largest_judged = 0;
     Pose to_first, to_other;             // from its own frame
     std::vector<std::uint32_t> listed;   // triangles that may meet the other's,
     std::vector<PlacedTriangle> placed;  // and these in the first's frame
@@ -171,7 +175,8 @@ class SurfacePair {
   void add_forces();
   Precision precision();
   double depth_of_largest();
-  double share_of_precise(double error, double area) const;
+  static void set_sizes(Role& role, const SolidSurface& other);
+  double share_of_precise(std::size_t role, double error, double area) const;
   double share_of_small(double size, double most) const;
   void add_force_of_crossed(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_whole(std::size_t role, std::uint32_t child);
@@ -187,6 +192,7 @@ class SurfacePair {
   double share_of_plausible(std::size_t role, const Foretold& below_planes, Vec3 middle) const;
   Foretold mixed_with_depth(std::size_t role, const Foretold& below_planes, double share,
                             Vec3 place);
+  Foretold bent(std::size_t role, const DepthCell& cell, Foretold linear, Vec3 middle) const;
   Foretold depth_at(std::size_t role, Vec3 place);
   LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear,
                             double weight);
