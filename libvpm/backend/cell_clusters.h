@@ -23,9 +23,9 @@ struct CellClusters {
 
 std::vector<BlockMass> block_masses(const Level& level);
 
-// Holds the samples of a level with the numbers of their faces, and these in rows (SampleFaces): a
-// row for every four samples of a block, counted from its first, of which one is beside a face;
-// balls among these are asked as it is.
+// Holds the samples of a level as queries ask them, and rows with the shapes of those beside faces
+// (SampleFaces). Each run of four samples of a block, counted from its first, has a row if one of
+// them is beside a face; then all four are in it, also balls.
 struct NumberedSamples {
   std::vector<CellSample> samples;
   std::vector<FaceRow> rows;

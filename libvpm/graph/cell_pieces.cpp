@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/lanes.h"
@@ -330,7 +329,8 @@ struct Placement {
     return {place(piece.centroid), static_cast<float>(unit * piece.moment_radius),
             piece.volume / volume};
   }
-  // Finds the face beside a piece, as it lies when its centroid is stored.
+  // Finds the face beside a piece whose centroid is where it is stored, that is rounded to float.
+  // Moves the centroid back into the solid where it is not.
   void find_face(const SolidFaces& faces, CellPiece& piece) const {
     const Vec3 stored = widen(place(piece.centroid)) / unit + origin;
     Vec3 inside = stored;

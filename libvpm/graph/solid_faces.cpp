@@ -6,21 +6,22 @@
 namespace vpm {
 namespace {
 
-// Least extent along the axis, in moment radii, of a piece that gets a shape. What is thinner is
-// rounding of what cells are sampled to.
+// Least extent along the axis, in moment radii, of a piece that gets a shape. Thinner ones
+// are within the rounding to which cells are sampled.
 constexpr double kThinnest = 1e-3;
 // How far about a centroid triangles are looked for, in moment radii: shapes reach no further.
 constexpr double kLook = 1.75;
-// Cosine of the axis and the direction to a triangle below which that is opposite to the face, and
-// limits how far the shape goes away from it.
+// Cosine of the axis and the direction to a triangle, below which the triangle is opposite to the
+// face and limits how far the shape reaches away from the face.
 constexpr double kOpposite = -0.7;
 // Sine squared below which a plane is at a right angle to the axis.
 constexpr double kRightAngle = 1e-9;
-// Relative difference up to which distances are to one place, but for rounding.
+// Relative difference up to which two triangles are equally near: it covers rounding.
 constexpr double kSamePlace = 1e-9;
-// Cosine of the axis and the normal of a triangle above which they belong to one smooth face. There
-// a shape may stick out by so much of the solid's radius, since a shape that is thin enough to stay
-// below a curved face has not its piece's second moment.
+// Cosine of the axis and the normal of a triangle, above which the triangle and the nearest one
+// belong to one smooth face; and how far a shape may stick out of such a face, in parts of the
+// solid's radius. A shape thin enough to stay wholly below a curved face would have less than its
+// piece's second moment.
 constexpr double kSmooth = 0.7, kExcess = 5e-4;
 
 // A triangle near a centroid, relative to it.
@@ -50,8 +51,9 @@ std::vector<NearTriangle> triangles_about(const TriangleBvh& tree, Vec3 centroid
   return all;
 }
 
-// Returns the nearest triangle, or null. Of triangles that share the nearest place, that of an
-// edge, it is the one that faces the centroid most: others may be seen from behind.
+// Returns the nearest triangle, or null if there is none. Where several share the nearest place, on
+// an edge or a corner, it is the one whose plane is furthest from the centroid, since the centroid
+// may lie in the planes of others, or on the wrong side of them.
 const NearTriangle* nearest_of(const std::vector<NearTriangle>& all) {
   const NearTriangle* best = nullptr;
   for (const NearTriangle& near : all) {
@@ -63,9 +65,9 @@ const NearTriangle* nearest_of(const std::vector<NearTriangle>& all) {
   return best;
 }
 
-// Returns the squared extent across the axis, `most` at most, with which a shape does not reach a
-// triangle: since it stays below the triangle's plane, or since it stays away from the triangle. It
-// may reach `excess` beyond a triangle of its own face.
+// Returns the largest squared extent across the axis, up to `most`, with which a shape does not
+// reach a triangle: either it stays below the triangle's plane, or within the ball about the
+// centroid that touches the triangle. It may reach `excess` further at triangles of its own face.
 double most_across(const NearTriangle& near, Vec3 axis, double toward, double away, double excess,
                    double most) {
   const double cosine = dot(near.normal, axis), sine2 = 1 - cosine * cosine,

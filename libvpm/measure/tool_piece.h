@@ -91,9 +91,10 @@ struct BlockMass {
   double weight = 0;  // sum of the samples' weights, in parts of the tool's volume
 };
 
-// Finds the shapes of samples in rows. In a level that is ready for queries (numbered_samples),
-// such a sample has -1 - k for its radius, where k is the number of its lane among those of all
-// rows. So a query tells balls by a number that it reads.
+// Finds the shapes of samples in rows. In a level that is ready for queries (numbered_samples), the
+// radius of such a sample is not a length but -1 - k, where k is the number of its lane among those
+// of all rows: less than 2^24, which a float holds exactly. So a query that has read a sample knows
+// whether it is a ball without reading more.
 struct SampleFaces {
   const FaceRow* rows = nullptr;
 
@@ -112,8 +113,8 @@ struct SampleFaces {
     return static_cast<std::uint32_t>(-1 - sample.radius);
   }
 };
-// True if some of a block's samples, or of a part of them, are in rows: these are the last ones of
-// their block, so that all others are asked at once.
+// True if some samples of a block, or of a run of them, are in rows. These are the last ones of
+// their block, so the last sample answers for all.
 VPM_HD inline bool have_faces(const CellSample* samples, std::size_t count) {
   return count > 0 && samples[count - 1].radius < 0;
 }
@@ -189,7 +190,8 @@ inline constexpr std::uint32_t kSumRows = 16;
 
 // Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
 // the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
-// lanes would all wait for the slowest. Real is double or a vector; PieceShape is a Shape.
+// lanes would all wait for the slowest. Real is double or a vector; Shape is BallShape<Real>,
+// FaceShape<Real> or, of doubles, PieceShape.
 template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,

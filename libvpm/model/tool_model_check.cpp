@@ -31,7 +31,8 @@ constexpr std::size_t kMaxSamplesOfACell = std::size_t{1} << 20;
 constexpr double kFarthestOfFace = 2;
 // Tolerance for what float32 rounds of a unit vector and of extents.
 constexpr double kUnitTolerance = 1e-5;
-// A query numbers the lanes of rows of four, of which one is at a face, by float32.
+// Most samples at faces. A query keeps the number of a sample's lane in a float32 (SampleFaces),
+// which is exact up to 2^24, and each face may need a row of four lanes.
 constexpr std::size_t kMostFaces = std::size_t{1} << 22;
 // Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
 // needs 32.

@@ -58,10 +58,11 @@ struct BallShape {
 
 // Replaces a piece beside a face of the solid (SampleFace) by one that ends there, so that nothing
 // is behind a plane before the solid is: balls would stick out of the face, all to the same side.
-// Seen along a normal it is a density over its extent, a polynomial of the second degree with the
-// piece's volume, centroid and second moment: at a right angle to a face a layer that ends at once,
-// across it the ball's. Extents and second moment are those of two halves of ellipsoids, so both
-// follow the normal without a bend. Normals are in the tool's axes.
+// Seen along a plane's normal it is a density over its extent: the polynomial of the second degree
+// with the piece's volume, centroid and second moment. Along the axis that is a layer that ends at
+// the face at once, across the axis the density of a ball. Extents and second moment are those of
+// two halves of ellipsoids, so both change smoothly as the normal turns. Normals are in the tool's
+// axes.
 template <class Real>
 struct FaceShape {
   PlaceOf<Real> axis;
@@ -133,9 +134,10 @@ struct FaceShape {
   }
 };
 
-// Holds four neighbouring samples beside faces as vectors load them: their centres, the numbers of
-// their shapes, and how far each reaches from its middle at most, m. A lane past the last sample
-// holds zeros, and a ball the shape whose extents are all its radius.
+// Holds four neighbouring samples, of which one at least is beside a face, as vectors load them:
+// their centres, the numbers of their shapes, and how far each reaches from its middle at most, m.
+// A lane past the block's last sample holds zeros. A ball has the shape whose extents are all its
+// radius.
 struct alignas(16) FaceRow {
   enum Number { x, y, z, axis_x, axis_y, axis_z, across, toward, away, along, farthest, kNumbers };
   static constexpr std::uint32_t kLanes = kNeighborSamples;
@@ -255,8 +257,8 @@ VPM_HD double fraction_behind(const Shape& shape, double distance, const Vec3& n
                                      : shape.fraction_of_cut(distance, normal);
 }
 
-// The same of a piece beside a face, apart: most pieces are balls, and these wait for no more
-// instructions, on a device for no more registers.
+// Do the same for a piece that may be beside a face. They are never inlined: most pieces are balls,
+// and the code that asks those keeps its few instructions, and on a device its few registers.
 [[gnu::noinline]] VPM_HD inline PlaneSide side_of_piece(const TurnedShape& shape, double distance,
                                                         const Vec3& normal) {
   return side_of_piece<TurnedShape>(shape, distance, normal);

@@ -94,7 +94,7 @@ FaceShape<double> face_of(Vec3 axis, double toward, double away, double along, d
   return {axis, square, toward * toward - square, away * away - square, along * along - square};
 }
 
-// A quarter of a layer of its face's height in each of four, seen along the axis.
+// Seen along the axis, equal parts of its thickness then hold equal parts of the piece.
 TEST(FaceShape, IsAUniformLayerWhereItsVarianceIsThatOfOne) {
   const double along = std::sqrt(5.0 / 3) * 0.2;
   const FaceShape<double> layer = face_of({0, 0, 1}, 0.2, 0.2, along, 0.3);

@@ -51,8 +51,8 @@ template <class Surface>
 }
 
 // Calls use(center, weight, shape, farthest) for four samples of a block, from `first` on: with
-// their shape, and how far it reaches at most, m. Only samples that `have_faces` may be in rows.
-// Lanes past the last sample have no weight if they are in a row, else what that sample has.
+// their shape, and how far it reaches at most, m. Without kHaveFaces none of them may be in a row.
+// Lanes past the last sample have no weight in a row; elsewhere they repeat that sample.
 template <bool kHaveFaces, class Use>
 [[gnu::always_inline]] inline void with_four(std::span<const CellSample> samples,
                                              std::uint32_t first, const SampleFaces& faces,
