@@ -6,8 +6,8 @@
 namespace vpm {
 namespace {
 
-// Least extent along the axis, in moment radii, of a piece that gets a shape. Thinner ones
-// are within the rounding to which cells are sampled.
+// Least extent along the axis, in moment radii, of a piece that gets a shape. Thinner ones are
+// within the rounding to which cells are sampled.
 constexpr double kThinnest = 1e-3;
 // How far about a centroid triangles are looked for, in moment radii: shapes reach no further.
 constexpr double kLook = 1.75;
