@@ -132,7 +132,8 @@ VoronoiQuality fill_cells(const Normalized& n, const SolidFaces& faces, const Sp
   level.block_begin = std::move(all.block_begin);
   level.blocks = std::move(all.blocks);
   level.samples = std::move(all.samples);
-  level.faces = std::move(all.faces);
+  // Balls that are so many are so small that they hardly stick out.
+  if (all.faces.size() <= kMostFaces) level.faces = std::move(all.faces);
   return cells.quality;
 }
 

@@ -268,8 +268,13 @@ class CellMeasure {
       part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin,
                              cell_.faces);
     } else {
-      part.weight = piece.weight * fraction_behind(BallShape<double>{piece.extent},
-                                                   other.border.distance(x), other.border.normal);
+      const double distance = other.border.distance(x);
+      const Vec3 normal_of_border = other.border.normal;
+      part.weight =
+          piece.weight *
+          (piece.shape.face == nullptr
+               ? fraction_behind(BallShape<double>{piece.extent}, distance, normal_of_border)
+               : fraction_behind(turned(piece.shape), distance, normal_of_border));
       part.moment = part.weight * piece.at;
     }
     sum.add_moment(part.weight, arm(part.moment), in_tool(other.normal));

@@ -75,6 +75,9 @@ struct SampleFace {
   float along = 0;           // radius of the ball with the piece's variance along the axis
   float across = 0;          // extent across the axis
 };
+// Most of them in a level. A query keeps the number of a sample's lane in a float32 (SampleFaces),
+// which is exact up to 2^24, and each face may need a row of four lanes.
+inline constexpr std::size_t kMostFaces = std::size_t{1} << 22;
 // Returns the largest variance along its axis, m^2, that such a shape may have: with more, its
 // density would be negative in the middle.
 inline double most_variance_at_face(double toward, double away) {

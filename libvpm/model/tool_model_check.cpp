@@ -30,10 +30,10 @@ constexpr std::size_t kMaxSamplesOfACell = std::size_t{1} << 20;
 // root of 3/2, of a long one along it the root of 3.
 constexpr double kFarthestOfFace = 2;
 // Tolerance for what float32 rounds of a unit vector and of extents.
-constexpr double kUnitTolerance = 1e-5;
-// Most samples at faces. A query keeps the number of a sample's lane in a float32 (SampleFaces),
-// which is exact up to 2^24, and each face may need a row of four lanes.
-constexpr std::size_t kMostFaces = std::size_t{1} << 22;
+constexpr double kUnitTolerance = 1e-6;
+// Least extents along the axis of a sample at a face, in those across it: of thinner ones rounding
+// would leave nothing of the density.
+constexpr double kThinnestFace = 0x1p-11;
 // Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
 // needs 32.
 constexpr std::uint32_t kDeepestHierarchy = 1000;
@@ -205,8 +205,10 @@ class LevelCheck {
                    most = kFarthestOfFace * double{level_.samples[face.sample].radius};
       if (!(std::abs(squared_norm(widen(face.axis)) - 1) <= kUnitTolerance))
         fail_face("has an axis that is no unit vector");
-      if (!(std::min(toward, away) > 0 && std::max(toward, away) <= along && along <= most &&
-            across >= 0 && across <= most))
+      const auto is_extent = [&](double extent) {
+        return extent > 0 && extent >= kThinnestFace * across && extent <= along;
+      };
+      if (!(across >= 0 && across <= most && along <= most && is_extent(toward) && is_extent(away)))
         fail_face("has extents out of range");
       if (!(along * along <= (1 + kUnitTolerance) * most_variance_at_face(toward, away) * 5))
         fail_face("has a larger variance than its extents allow");
@@ -279,6 +281,9 @@ class LevelCheck {
       check(widen(block.center), block.radius);
       for (std::uint32_t s = block.begin; s < block.end; ++s)
         check(widen(level_.samples[s].center), level_.samples[s].radius);
+      for (auto face = std::ranges::lower_bound(level_.faces, block.begin, {}, &SampleFace::sample);
+           face != level_.faces.end() && face->sample < block.end; ++face)
+        check(widen(level_.samples[face->sample].center), std::max(face->along, face->across));
     }
   }
 

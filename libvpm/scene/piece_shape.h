@@ -106,8 +106,10 @@ struct FaceShape {
       return (2 * distance - middle) * per_width;
     }
     [[gnu::always_inline]] VPM_HD Real fraction(const Real& distance) const {
-      const Real s = place(distance);
-      return 0.5 * (1 - s) * (1 + (1 + s) * (tilt + bend * s));
+      const Real s = place(distance), one = Real{} + 1;
+      const Real part = 0.5 * (1 - s) * (1 + (1 + s) * (tilt + bend * s));
+      const Real least = part > Real{} ? part : Real{};  // rounding may pass both
+      return least < one ? least : one;
     }
     [[gnu::always_inline]] VPM_HD Real section(const Real& distance) const {
       const Real s = place(distance);
@@ -142,7 +144,7 @@ struct alignas(16) FaceRow {
   enum Number { x, y, z, axis_x, axis_y, axis_z, across, toward, away, along, farthest, kNumbers };
   static constexpr std::uint32_t kLanes = kNeighborSamples;
 
-  // Keeps `farthest` a bound, though axes are units and squares are rounded to floats only.
+  // Keeps `farthest` a bound, though axes are unit vectors only as floats are.
   static constexpr float kMargin = 1 + 2e-5F;
 
   double weights[kLanes] = {};
@@ -150,19 +152,16 @@ struct alignas(16) FaceRow {
 
   // Sets a lane to a sample and its face; its `sample` is not asked.
   void set(std::uint32_t lane, const CellSample& sample, const SampleFace& face) {
-    const auto squared = [](float a) { return double{a} * double{a}; };
-    const double beside = squared(face.across);
-    const auto larger = [&](float a) { return static_cast<float>(squared(a) - beside); };
     const float all[] = {sample.center.x,
                          sample.center.y,
                          sample.center.z,
                          face.axis.x,
                          face.axis.y,
                          face.axis.z,
-                         static_cast<float>(beside),
-                         larger(face.toward),
-                         larger(face.away),
-                         larger(face.along),
+                         face.across,
+                         face.toward,
+                         face.away,
+                         face.along,
                          kMargin * (face.along > face.across ? face.along : face.across)};
     static_assert(sizeof(all) == kNumbers * sizeof(float));
     for (std::uint32_t n = 0; n < kNumbers; ++n) numbers[n * kLanes + lane] = all[n];
@@ -177,11 +176,16 @@ VPM_HD inline double number_of(FaceInRow face, FaceRow::Number number) {
 // Returns the shape whose numbers `number` returns.
 template <class Real, class Number>
 [[gnu::always_inline]] VPM_HD inline FaceShape<Real> face_shape(const Number& number) {
+  const Real across = number(FaceRow::across), beside = across * across;
+  const auto larger = [&](FaceRow::Number of) __attribute__((always_inline)) {
+    const Real extent = number(of);
+    return extent * extent - beside;
+  };
   return {{number(FaceRow::axis_x), number(FaceRow::axis_y), number(FaceRow::axis_z)},
-          number(FaceRow::across),
-          number(FaceRow::toward),
-          number(FaceRow::away),
-          number(FaceRow::along)};
+          beside,
+          larger(FaceRow::toward),
+          larger(FaceRow::away),
+          larger(FaceRow::along)};
 }
 VPM_HD inline FaceShape<double> shape_of(FaceInRow face) {
   return face_shape<double>([face](FaceRow::Number number) { return number_of(face, number); });

@@ -57,7 +57,8 @@ def test_nothing_counts_before_contact_and_all_in_a_scan_of_itself(solid):
     corners, faces = SOLIDS[solid]
     tool = vpm.make_tool((corners, faces), spheres=100, levels=[10])
     random = np.random.default_rng(1)
-    toward = np.concatenate([normals(corners, faces), random.normal(size=(12, 3))])
+    of_faces = normals(corners, faces)
+    toward = np.concatenate([of_faces, random.normal(size=(12, 3))])
     toward /= np.linalg.norm(toward, axis=1, keepdims=True)
     poses = np.tile(np.eye(4), (len(toward), 1, 1))
     for pose, direction in zip(poses, toward):
@@ -69,5 +70,5 @@ def test_nothing_counts_before_contact_and_all_in_a_scan_of_itself(solid):
         for wall in walls():
             assert query.run_batch(wall, poses).volume.max() <= 1e-6 * tool.volume
             deeper = poses + 0.02 * tool.radius * np.eye(4)[2][:, None] * np.eye(4)[3]
-            assert query.run_batch(wall, deeper).volume.max() > 1e-4 * tool.volume
+            assert (query.run_batch(wall, deeper).volume[:len(of_faces)] > 1e-4 * tool.volume).all()
         assert abs(query.run(itself, np.eye(4)).volume_fraction - 1) < 1.5e-3

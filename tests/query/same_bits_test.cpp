@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/checksum.h"
@@ -204,7 +205,9 @@ Cloud scaled(Cloud cloud, double s) {
 TEST_P(SameBits, ExceptTheExponentForPowersOfTwo) {
   const ToolModel tool = lattice_cube(0.2, 8, 2);
   const std::vector<Result> plain = sweep(cloud(), tool);
-  for (const int exponent : {-40, -7, 1, 40}) {
+  for (const int exponent : {-66, -40, -7, 1, 40, 66}) {
+    // Of points so small the processor takes ten times as long: squares of floats are denormal.
+    if (std::abs(exponent) > 60 && !cloud().sensor) continue;
     const double s = std::ldexp(1.0, exponent);
     expect_same(plain, sweep(scaled(cloud(), s), scaled(tool, s), s), s);
   }

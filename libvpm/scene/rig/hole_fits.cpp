@@ -368,8 +368,9 @@ class RimSurfaces {
                           std::back_inserter(found));
       double squares = 0;
       for (const RimSurface& surface : found) squares += squares_of(surface.pixels, surface.fit);
-      if (!whole ||
-          (are_told && squares < kMuchNearer * kMuchNearer * squares_of(pixels, *whole))) {
+      const bool has_parts = !found.empty();  // of a few pixels a part may be too small
+      if (!whole || (are_told && has_parts &&
+                     squares < kMuchNearer * kMuchNearer * squares_of(pixels, *whole))) {
         is_told = is_told && are_told;
         return found;
       }

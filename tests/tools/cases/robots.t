@@ -10,7 +10,7 @@ $ vpm-query --urdf arm.urdf --joints joints.jsonl --cloud wall.vpmc -o found.jso
 2> vpm-query: note: 4 configurations, at 1 of which links share volume; 1 pairs of links were asked
 $ python3 -c 'import json; [print(l.get("id"), [round(p["volume"] * 1e6) for p in l["links"]], round(l["volume"] * 1e6), [round(l["force"][2] * 1e6)], [round(x, 3) + 0 for x in l["links"][2]["pose"][:3]], [(s["links"], round(s["volume"] * 1e6, 3)) for s in l["self"]], l.get("beyond_limits")) for l in map(json.loads, open("found.jsonl"))]'
 touch [0, 200, 200] 401 [-401] [0.0, 0.0, 0.96] [] None
-None [0, 3, 1500] 1503 [-1503] [0.0, 0.0, 0.95] [] None
+None [0, 0, 1500] 1500 [-1500] [0.0, 0.0, 0.95] [] None
 None [0, 0, 0] 0 [0] [0.0, 0.0, 0.2] [(['base', 'hand'], 1000.0)] None
 None [0, 0, 0] 0 [0] [0.0, 0.0, 0.8] [] ['turn']
 
@@ -44,7 +44,7 @@ $ vpm-query --urdf arm.urdf --joints joints.jsonl --contacts 2 --quiet -o touch.
 
 # The page of --view has each link with its mesh and what it has in the scene and shares with others, with a scene and without.
 $ for o in "--cloud wall.vpmc" ""; do vpm-query --urdf arm.urdf --joints joints.jsonl $o --contacts --view page.html --quiet -o - 2>&1 > /dev/null | grep -v limits; python3 -c "import base64, json, struct; p = open('page.html').read(); d = json.JSONDecoder().raw_decode(p, p.index('{', p.index('id=\"data\"')))[0]; n = lambda c: [round(1e6 * x) for x in struct.unpack('<4f', base64.b64decode(c['values']['data']))]; print(d['title'], [l['name'] for l in d['layers'] if l['type'] == 'mesh'], sum(l['type'] == 'spheres' for l in d['layers']), [n(c) for c in d['columns'] if c['name'] == 'volume'], sorted({l['name'] for l in d['layers'] if l['type'] == 'lines'}))"; rm page.html; done
-base, slide, hand in wall.vpmc ["tool's mesh of base", "tool's mesh of slide", "tool's mesh of hand"] 3 [[0, 0, 1000, 0], [200, 3, 0, 0], [200, 1500, 1000, 0]] ['contacts of base', 'contacts of hand', 'contacts of slide']
+base, slide, hand in wall.vpmc ["tool's mesh of base", "tool's mesh of slide", "tool's mesh of hand"] 3 [[0, 0, 1000, 0], [200, 0, 0, 0], [200, 1500, 1000, 0]] ['contacts of base', 'contacts of hand', 'contacts of slide']
 base, slide, hand ["tool's mesh of base", "tool's mesh of slide", "tool's mesh of hand"] 0 [[0, 0, 1000, 0], [0, 0, 0, 0], [0, 0, 1000, 0]] ['contacts of base', 'contacts of hand']
 
 # An interrupted run goes on, unless a link's mesh changed.
