@@ -32,7 +32,7 @@ struct NearTriangle {
   double height;    // of its plane above the centroid
 };
 
-// Lists the triangles within a radius of a centroid.
+// Returns the triangles of the solid that come nearer to a piece's centroid than this radius.
 std::vector<NearTriangle> triangles_about(const TriangleBvh& tree, Vec3 centroid, double radius) {
   std::vector<std::uint32_t> found(64);
   std::size_t count = tree.around(centroid, radius, found);
@@ -67,7 +67,8 @@ const NearTriangle* nearest_of(const std::vector<NearTriangle>& all) {
 
 // Returns the largest squared extent across the axis, up to `most`, with which a shape does not
 // reach a triangle: either it stays below the triangle's plane, or within the ball about the
-// centroid that touches the triangle. It may reach `excess` further at triangles of its own face.
+// centroid that touches the triangle. Triangles that face nearly as the axis does are of the face
+// that the piece lies beside; it may reach `excess` further than these.
 double most_across(const NearTriangle& near, Vec3 axis, double toward, double away, double excess,
                    double most) {
   const double cosine = dot(near.normal, axis), sine2 = 1 - cosine * cosine,

@@ -91,8 +91,9 @@ struct BlockMass {
   double weight = 0;  // sum of the samples' weights, in parts of the tool's volume
 };
 
-// Finds the shapes of samples in rows. In a level that is ready for queries (numbered_samples), the
-// radius of such a sample is not a length but -1 - k, where k is the number of its lane among those
+// Finds the shapes of samples beside faces of the solid, four of which share a FaceRow. In a level
+// that is ready for queries (numbered_samples), the radius of a sample that has a lane of a row is
+// not a length but -1 - k, where k is the number of that lane among those
 // of all rows: less than 2^24, which a float holds exactly. So a query that has read a sample knows
 // whether it is a ball without reading more.
 struct SampleFaces {

@@ -234,7 +234,7 @@ struct TurnedShape {
   }
 };
 
-// Tells the side of a plane on which a body lies.
+// Tells where a body lies: before a plane, toward its normal, behind it, or on both sides.
 enum class PlaneSide : std::uint8_t { before, cut, behind };
 // Returns the side of a body whose middle is at this signed distance and that reaches so far toward
 // the plane, and as far the other way. A body that only touches the plane is not cut.

@@ -120,7 +120,8 @@ RigBody rig_with_holes(const synthetic::Surface& surface, int count) {
   return RigBody(images_with_holes(surface, with_larger_pixels(ring_of_cameras(count), 2, 2)));
 }
 
-// Two of the images are of one camera, and differ in their holes only.
+// Two of the four images are from one place and differ in their holes only, so what both tell is
+// equal: no such tie may fall to the image that is listed first.
 TEST(RigOfAnyScene, OrderOfImagesWithHolesChangesNoBit) {
   std::vector<Camera> cameras = with_larger_pixels(ring_of_cameras(3), 2, 2);
   cameras.push_back(cameras.front());

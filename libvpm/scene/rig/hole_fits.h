@@ -24,7 +24,8 @@ template <class Real>
 struct FitAt {
   Real inverse_depth, per_u, per_v;
 };
-// Evaluates a fit whose numbers get(member) returns.
+// Evaluates the fit of a hole at column u and row v of the image, pixels. get(&HoleFit::a), and so
+// for its other numbers, returns that number of one fit, or those of four fits in a vector.
 template <class Real, class Get>
 [[gnu::always_inline]] VPM_HD inline FitAt<Real> evaluate(const Get& get, const Real& u,
                                                           const Real& v) {

@@ -40,7 +40,8 @@ struct RigSampler {
     using Real = RealOf<Place>;
     SurfaceSampleOf<Real> sampled;
     MaskOf<Real> is_decided{};
-    // Compiles sample_by() once: two calls of it take the compiler twice as long.
+    // Asks `some` cameras first, and all where these leave a place open. By a loop, since
+    // sample_by() is inlined: with two calls the compiler would take twice as long.
     for (CameraSet asked = some;; asked = all_cameras()) {
       const MaskOf<Real> is_taken = is_decided;
       const SurfaceSampleOf<Real> found = sample_by(x, asked, enough, deepest, is_decided);
