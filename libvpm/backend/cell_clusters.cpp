@@ -59,10 +59,12 @@ NumberedSamples numbered_samples(const Level& level) {
       if (lane == 0) numbered.rows.emplace_back();
       CellSample& sample = numbered.samples[k];
       const float r = sample.radius;
-      numbered.rows.back().set(lane, sample,
-                               face != level.faces.end() && face->sample == k
+      const SampleFace shape = face != level.faces.end() && face->sample == k
                                    ? *face++
-                                   : SampleFace{k, {1, 0, 0}, r, r, r, r});
+                                   : SampleFace{k, {1, 0, 0}, r, r, r, r};
+      FaceRow& row = numbered.rows.back();
+      row.set(lane, sample, shape);
+      if (k + 1 == block.end) row.repeat(lane);
       sample.radius = -1 - static_cast<float>((numbered.rows.size() - 1) * FaceRow::kLanes + lane);
     }
   }

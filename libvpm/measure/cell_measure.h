@@ -193,11 +193,11 @@ class CellMeasure {
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
                                const SurfaceSample& on_surface) const {
     PieceSample sampled{x, on_surface};
-    if (on_surface.known)
-      sampled.side =
-          piece.shape.face == nullptr
-              ? side_of_plane(on_surface.distance, piece.shape.radius)
-              : side_of_piece(turned(piece.shape), on_surface.distance, on_surface.normal);
+    if (on_surface.known) {
+      sampled.side = with_shape(piece.shape, [&](const auto& shape) {
+        return side_of_piece(shape, on_surface.distance, on_surface.normal);
+      });
+    }
     sampled.is_inside = sampled.side != PlaneSide::before;
     if (!sampled.is_inside) return sampled;
     sampled.is_far = is_far_behind(surface_, x, on_surface.distance, tool_radius_);
@@ -249,11 +249,9 @@ class CellMeasure {
   }
   // Returns the part of a cut piece behind the surface, with the piece's centroid.
   VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
-    piece.weight *=
-        piece.shape.face == nullptr
-            ? surface_.fraction_inside(sampled.on_surface, sampled.x,
-                                       BallShape<double>{piece.shape.radius})
-            : surface_.fraction_inside(sampled.on_surface, sampled.x, turned(piece.shape));
+    piece.weight *= with_shape(piece.shape, [&](const auto& shape) {
+      return surface_.fraction_inside(sampled.on_surface, sampled.x, shape);
+    });
     return piece;
   }
   VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
@@ -268,13 +266,10 @@ class CellMeasure {
       part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin,
                              cell_.faces);
     } else {
-      const double distance = other.border.distance(x);
-      const Vec3 normal_of_border = other.border.normal;
       part.weight =
-          piece.weight *
-          (piece.shape.face == nullptr
-               ? fraction_behind(BallShape<double>{piece.extent}, distance, normal_of_border)
-               : fraction_behind(turned(piece.shape), distance, normal_of_border));
+          piece.weight * with_shape({piece.extent, piece.shape.face}, [&](const auto& shape) {
+            return fraction_behind(shape, other.border.distance(x), other.border.normal);
+          });
       part.moment = part.weight * piece.at;
     }
     sum.add_moment(part.weight, arm(part.moment), in_tool(other.normal));
@@ -361,7 +356,13 @@ class CellMeasure {
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:
-  VPM_HD TurnedShape turned(const PieceShape& shape) const { return {shape, to_surface_.rotation}; }
+  // Returns use(shape) with the ball, or with the shape of a sample beside a face, which takes more
+  // code.
+  template <class Use>
+  VPM_HD auto with_shape(const PieceShape& shape, const Use& use) const {
+    return shape.face == nullptr ? use(BallShape<double>{shape.radius})
+                                 : use(TurnedShape{shape, to_surface_.rotation});
+  }
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
     return tool_radius_.inverse * about_center_of_mass;
   }

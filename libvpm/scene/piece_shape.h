@@ -138,8 +138,8 @@ struct FaceShape {
 
 // Holds four neighbouring samples, of which one at least is beside a face, as vectors load them:
 // their centres, the numbers of their shapes, and how far each reaches from its middle at most, m.
-// A lane past the block's last sample holds zeros. A ball has the shape whose extents are all its
-// radius.
+// Lanes past the block's last sample repeat it without weight, so that they are read where it is. A
+// ball has the shape whose extents are all its radius.
 struct alignas(16) FaceRow {
   enum Number { x, y, z, axis_x, axis_y, axis_z, across, toward, away, along, farthest, kNumbers };
   static constexpr std::uint32_t kLanes = kNeighborSamples;
@@ -166,6 +166,13 @@ struct alignas(16) FaceRow {
     static_assert(sizeof(all) == kNumbers * sizeof(float));
     for (std::uint32_t n = 0; n < kNumbers; ++n) numbers[n * kLanes + lane] = all[n];
     weights[lane] = sample.weight;
+  }
+  // Fills the lanes after `last` with its numbers, without weight.
+  void repeat(std::uint32_t last) {
+    for (std::uint32_t lane = last + 1; lane < kLanes; ++lane) {
+      for (std::uint32_t n = 0; n < kNumbers; ++n)
+        numbers[n * kLanes + lane] = numbers[n * kLanes + last];
+    }
   }
 };
 // Points to the numbers of one sample in a FaceRow, which lie FaceRow::kLanes apart.

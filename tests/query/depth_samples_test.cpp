@@ -3,51 +3,26 @@
 
 #include <bit>
 #include <limits>
-#include <random>
 
-#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/cloud/normals.h"
+#include "libvpm/measure/contact_patch.h"
 #include "libvpm/scene/depth/depth_body.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/lattice_model.h"
+#include "tests/query/samples_beside_faces.h"
 #include "tests/test_name.h"
 
 namespace vpm {
 namespace {
 
-class Numbers {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
-  }
-  Vec3 place(double half) {
-    return {between(-half, half), between(-half, half), between(-half, half)};
-  }
-
- private:
-  std::mt19937 random_{1};
-};
-
-// Makes a level's samples one block, gives the last ones a face, and returns them as queries ask
-// them.
-NumberedSamples with_faces(Numbers& numbers, Level& level) {
-  const auto count = static_cast<std::uint32_t>(level.samples.size());
-  level.blocks = {{{}, 0, 0, count}};
-  for (auto k = static_cast<std::uint32_t>(numbers.between(0, 1.3) * count); k < count; ++k) {
-    float& radius = level.samples[k].radius;
-    radius = std::max(radius, 0.001F);
-    const auto part = [&] { return radius * static_cast<float>(numbers.between(0.6, 1)); };
-    const Vec3 axis = normalized_or_zero(numbers.place(1));
-    level.faces.push_back({k, narrow(axis), part(), part(), radius, part()});
-  }
-  return numbered_samples(level);
-}
+using testing::Draws;
+using testing::with_faces;
 
 // Returns a cloud with creases, jumps, noise and holes.
 Cloud rough_cloud(const char* scene) {
   auto [camera, image] = testing::small_noisy_image(scene);
-  Numbers numbers;
+  Draws numbers;
   for (float& depth : image.depth) {
     if (numbers.between(0, 1) < 0.02) depth = 0;
     if (numbers.between(0, 1) < 0.02) depth *= 1.05F;
@@ -57,7 +32,7 @@ Cloud rough_cloud(const char* scene) {
 
 // Returns a place near the surface, beside the image, behind the camera, or where nothing was
 // measured.
-Vec3 any_place(Numbers& numbers) {
+Vec3 any_place(Draws& numbers) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   static const Vec3 odd[] = {{0, 0, 0},      {0.1, HUGE_VAL, 1}, {0, 0, 1e-40}, {0, 0, 0x1p-100},
                              {0, 0, 1e-300}, {kNaN, 0, 1},       {0, 0, kNaN},  {0, 0, HUGE_VAL}};
@@ -86,7 +61,7 @@ void expect_same(const SurfaceSample& a, const SurfaceSample& b) {
   EXPECT_EQ(a.point, b.point);
 }
 
-int known_of_four(const DepthSurface& surface, Numbers& numbers) {
+int known_of_four(const DepthSurface& surface, Draws& numbers) {
   Vec3 places[4];
   SurfaceSample together[4];
   for (Vec3& place : places) place = any_place(numbers);
@@ -101,7 +76,7 @@ int known_of_four(const DepthSurface& surface, Numbers& numbers) {
 }
 
 // Compares the normals of `count` places behind the surface.
-void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers& numbers,
+void expect_same_normals(const DepthSurface& surface, std::size_t count, Draws& numbers,
                          int& turned) {
   std::vector<PlaceSample> places(count);
   for (PlaceSample& place : places) {
@@ -124,7 +99,7 @@ class DepthReadings : public ::testing::TestWithParam<const char*> {
   // Removes some normals, and turns some so that they cannot be right.
   DepthReadings() {
     for (Vec3f& normal : normals_) {
-      const double kind = numbers_.between(0, 1);
+      const double kind = draws_.between(0, 1);
       if (kind < 0.03) normal = kind < 0.01 ? Vec3f{} : Vec3f{1, 0, 0};
     }
     surface_.normals = normals_.data();
@@ -134,26 +109,26 @@ class DepthReadings : public ::testing::TestWithParam<const char*> {
   DepthSurface surface_ = cloud_.surface();
   std::vector<Vec3f> normals_ = std::vector<Vec3f>(
       surface_.normals, surface_.normals + std::ptrdiff_t{surface_.width} * surface_.height);
-  Numbers numbers_;
+  Draws draws_;
 };
 
 TEST_P(DepthReadings, OfFourPlacesAreThoseOfEach) {
   int known = 0;
-  for (int k = 0; k < 20000; ++k) known += known_of_four(surface_, numbers_);
+  for (int k = 0; k < 20000; ++k) known += known_of_four(surface_, draws_);
   EXPECT_GT(known, 5000);
 }
 
 TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceMayReach) {
   int reached = 0, of_no_size = 0;
   for (int k = 0; k < 2000; ++k) {
-    const Pose to_surface{testing::generic_rotation(), any_place(numbers_)};
+    const Pose to_surface{testing::generic_rotation(), any_place(draws_)};
     Level level;
-    level.samples.resize(static_cast<std::size_t>(numbers_.between(0, 40)));
+    level.samples.resize(static_cast<std::size_t>(draws_.between(0, 40)));
     for (CellSample& sample : level.samples) {
-      const double radius = std::max(0.0, numbers_.between(-0.005, 0.02));
-      sample = {narrow(numbers_.place(0.05)), static_cast<float>(radius), 1};
+      const double radius = std::max(0.0, draws_.between(-0.005, 0.02));
+      sample = {narrow(draws_.place(0.05)), static_cast<float>(radius), 1};
     }
-    const auto& [samples, rows] = with_faces(numbers_, level);
+    const auto& [samples, rows] = with_faces(draws_, level);
     const SampleFaces faces{rows.data()};
     std::vector<SurfaceOfSample> together(samples.size());
     together.resize(
@@ -181,7 +156,7 @@ TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceMayReach) {
 
 TEST_P(DepthReadings, FindTheNormalsThatEachFinds) {
   int turned = 0;
-  for (std::size_t k = 0; k < 5000; ++k) expect_same_normals(surface_, k % 10, numbers_, turned);
+  for (std::size_t k = 0; k < 5000; ++k) expect_same_normals(surface_, k % 10, draws_, turned);
   EXPECT_GT(turned, 3000);
 }
 
@@ -227,7 +202,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   int cut = 0, pushed = 0, far = 0;  // samples of blocks that are neither flat nor on one side
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
-                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+                          {draws_.between(-0.3, 0.3), 0, draws_.between(0.8, 1.2)}};
     // Takes the cells of two blocks.
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
@@ -270,7 +245,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
   Vec3 together, alone;
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
-                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+                          {draws_.between(-0.3, 0.3), 0, draws_.between(0.8, 1.2)}};
     for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, ToolRadius{tool.radius, Shadows::near},
@@ -310,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DepthReadings,
 // An image that shows a rough wall at about 1 m.
 struct SmallImage {
   SmallImage(std::int32_t width, std::int32_t height) {
-    Numbers numbers;
+    Draws numbers;
     for (std::int32_t k = 0; k < width * height; ++k) {
       const auto inverse_depth = static_cast<float>(numbers.between(0.98, 1.02));
       pixels.push_back({inverse_depth, inverse_depth});
@@ -333,7 +308,7 @@ TEST(SmallImages, AreReadTogetherAsInTurn) {
   for (const std::int32_t width : {1, 2, 8, 9, 10}) {
     for (const std::int32_t height : {1, 8, 9}) {
       const SmallImage image(width, height);
-      Numbers numbers;
+      Draws numbers;
       int known = 0, turned = 0;
       for (std::size_t k = 0; k < 2000; ++k) {
         known += known_of_four(image.surface, numbers);
@@ -358,7 +333,7 @@ TEST(SmallImages, HaveNoPixelBeyondTheirRim) {
 }
 
 TEST(ClippedSamples, AddUpTogetherAsInTurn) {
-  Numbers numbers;
+  Draws numbers;
   int cut = 0, whole = 0, touched = 0;
   for (int k = 0; k < 20000; ++k) {
     ClipPlane plane;
@@ -406,6 +381,41 @@ TEST(ClippedSamples, AddUpTogetherAsInTurn) {
   EXPECT_GT(cut, 5000);
   EXPECT_GT(whole, 100);
   EXPECT_GT(touched, 500);
+}
+
+TEST(SectionOfSamples, IsThatOfEachAlone) {
+  Draws numbers;
+  int behind_of_some = 0, cut = 0;
+  for (int k = 0; k < 5000; ++k) {
+    ClipPlane plane;
+    plane.normal = normalized_or_zero(numbers.place(1));
+    plane.height = numbers.between(-0.12, 0.12);
+    Level level;
+    level.samples.resize(static_cast<std::size_t>(numbers.between(0, kAtOnce + 1)));
+    for (CellSample& sample : level.samples) {
+      sample = {narrow(numbers.place(0.1)), static_cast<float>(numbers.between(0.001, 0.03)),
+                numbers.between(0.1, 1)};
+    }
+    const auto& [samples, rows] = with_faces(numbers, level);
+    const SampleFaces faces{rows.data()};
+    CellSection together, of_each;
+    const std::uint32_t behind = add_section(plane, samples, faces, together);
+    std::uint32_t behind_of_each = 0;
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      const bool is_behind = of_each.add(shape_of(samples[s], faces), widen(samples[s].center),
+                                         samples[s].weight, plane);
+      behind_of_each |= (is_behind ? 1U : 0U) << s;
+    }
+    EXPECT_EQ(behind, behind_of_each);
+    EXPECT_NEAR(together.weight, of_each.weight, 1e-13);
+    EXPECT_LE(norm(together.moment - of_each.moment), 1e-14);
+    EXPECT_NEAR(together.below, of_each.below, 1e-14);
+    EXPECT_NEAR(together.section, of_each.section, 1e-12 * (1 + of_each.section));
+    behind_of_some += behind != 0 && std::has_single_bit(behind + 1) ? 0 : 1;
+    cut += of_each.section > 0 ? 1 : 0;
+  }
+  EXPECT_GT(behind_of_some, 1000);
+  EXPECT_GT(cut, 1000);
 }
 
 }  // namespace

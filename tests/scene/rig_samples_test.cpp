@@ -8,34 +8,43 @@
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/ring_of_cameras.h"
+#include "tests/query/samples_beside_faces.h"
 #include "tests/scene/rig_scenes.h"
 
 namespace vpm {
 namespace {
 
+using testing::Draws;
 using testing::expect_same_bits;
 using testing::make_holes;
 using testing::places;
 using testing::ring_of_cameras;
 using testing::room_with;
 using testing::scene;
+using testing::with_faces;
 
 // Counts samples of which is told only that they are wholly behind the surface, by less than
 // `deepest`, m, and those that are deeper.
 struct Told {
   int only_side = 0, deeper = 0;
 };
-// Expects of samples in the rig's frame what is told of each of them alone.
-void expect_samples_of_each(const RigSurface::View& view, std::span<const CellSample> samples,
+// Expects of samples at a pose in the rig's frame what is told of each of them alone.
+void expect_samples_of_each(const RigSurface::View& view, const Pose& to_rig,
+                            std::span<const CellSample> samples, const SampleFaces& faces,
                             double deepest, Told& told) {
   std::vector<SurfaceOfSample> reached(samples.size());
-  const std::uint32_t wanted = sample_surface(view, Pose{}, samples, {}, deepest, reached.data());
+  const std::uint32_t wanted =
+      sample_surface(view, to_rig, samples, faces, deepest, reached.data());
   std::uint32_t next = 0;
   for (std::uint32_t k = 0; k < samples.size(); ++k) {
-    const double radius = samples[k].radius;
-    const SurfaceSample alone = view.sample_within(widen(samples[k].center), radius);
+    const PieceShape shape = shape_of(samples[k], faces);
+    const double radius = shape.radius;
+    const SurfaceSample alone = view.sample_within(to_rig * widen(samples[k].center), radius);
     const bool is_left_out = next == wanted || reached[next].sample != k;
-    EXPECT_EQ(is_left_out, alone.known && alone.distance >= radius) << k;
+    EXPECT_EQ(is_left_out,
+              alone.known && side_of_piece(TurnedShape{shape, to_rig.rotation}, alone.distance,
+                                           alone.normal) == PlaneSide::before)
+        << k;
     if (is_left_out) continue;
     const Vec3 x = reached[next].at.x;
     const SurfaceSample& found = reached[next++].at.on_surface;
@@ -88,7 +97,7 @@ TEST(RigOfAnyScene, PlacesTogetherHaveTheBitsOfEachAlone) {
       CellSample samples[4];
       for (int lane = 0; lane < 4; ++lane)
         samples[lane] = {narrow(four[lane]), 0.01F * static_cast<float>(1 + k % 5), 1};
-      expect_samples_of_each({&surface, some}, samples, HUGE_VAL, told);
+      expect_samples_of_each({&surface, some}, {}, samples, {}, HUGE_VAL, told);
       if (count == 0) continue;
       Vec3 normals[4];
       closest_normals(surface, {known, count}, normals);
@@ -121,6 +130,7 @@ RigBody any_rig(int count, std::uint32_t seed) {
 // has the bits of each alone.
 TEST(RigOfAnyScene, SamplesOfABlockAreThoseOfEachAlone) {
   Told told;
+  Draws numbers;
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const RigBody rig = any_rig(2 + static_cast<int>(seed % 4), seed);
     const RigSurface surface = rig.surface();
@@ -128,12 +138,14 @@ TEST(RigOfAnyScene, SamplesOfABlockAreThoseOfEachAlone) {
     for (std::size_t k = 0; k < centers.size(); ++k) {
       const double size = 0.002 + 0.02 * std::abs(std::sin(4.1 * static_cast<double>(k)));
       const Vec3 center = inverse(rig.to_world()) * centers[k];
-      std::vector<CellSample> samples;
+      Level level;
       for (const Vec3& offset : offsets)
-        samples.push_back(
-            {narrow(center + 0.6 * size * offset), static_cast<float>(0.2 * size), 1});
+        level.samples.push_back({narrow(0.6 * size * offset), static_cast<float>(0.2 * size), 1});
+      const auto& [samples, rows] = with_faces(numbers, level);
       const double deepest = k % 2 == 0 ? HUGE_VAL : 0.04;
-      expect_samples_of_each({&surface, surface.all_cameras()}, samples, deepest, told);
+      expect_samples_of_each({&surface, surface.all_cameras()},
+                             {rotation_from_vector(numbers.place(2)), center}, samples,
+                             {rows.data()}, deepest, told);
     }
   }
   EXPECT_GT(told.only_side, 2000);

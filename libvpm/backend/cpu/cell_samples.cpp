@@ -52,7 +52,7 @@ template <class Surface>
 
 // Calls use(center, weight, shape, farthest) for four samples of a block, from `first` on: with
 // their shape, and how far it reaches at most, m. Without kHaveFaces none of them may be in a row.
-// Lanes past the last sample have no weight in a row; elsewhere they repeat that sample.
+// Lanes past the last sample repeat it, without weight in a row.
 template <bool kHaveFaces, class Use>
 [[gnu::always_inline]] inline void with_four(std::span<const CellSample> samples,
                                              std::uint32_t first, const SampleFaces& faces,
