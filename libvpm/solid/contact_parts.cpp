@@ -297,7 +297,7 @@ CrossedTriangle ContactParts::piece(std::uint32_t role, std::uint32_t face, std:
       if (end.sign != 0 && end.role == role && end.edge == 1)
         piece.add_far_point(end.sign, end.place);
   }
-  if ((corners_inside(role, face) & 4u) != 0 && find(vertex(role, corners(role, face)[2])) == part)
+  if ((corners_inside(role, face) & 4u) != 0 && find(corner(role, face, 2)) == part)
     piece.add_corner_inside();
   return piece;
 }

@@ -81,6 +81,10 @@ class ContactParts {
   unsigned corners_inside(std::uint32_t role, std::uint32_t face) const {
     return corners_inside_[role][face];
   }
+  // Returns the element that stands for a corner of a face.
+  std::uint32_t corner(std::uint32_t role, std::uint32_t face, std::size_t k) {
+    return vertex(role, corners(role, face)[k]);
+  }
   // Returns integrals over what belongs to one part, of the part of a face inside.
   CrossedTriangle piece(std::uint32_t role, std::uint32_t face, std::uint32_t part);
   // Returns a segment or vertex at the border of the part of a face inside that holds a place: what

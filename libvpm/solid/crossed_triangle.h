@@ -33,6 +33,8 @@ struct CrossedTriangle {
   // Integrals over the part, but for w of c: 1, x, and products of x.
   double area() const { return sums_.real(0); }
   Vec3 mean() const { return {sums_.real(1), sums_.real(2), sums_.real(3)}; }
+  // Returns the middle of the part, or the corner a where it has no area.
+  Vec3 middle() const { return area() > 0 ? mean() / area() : corner[0]; }
   Products products() const {
     return {sums_.real(4), sums_.real(5), sums_.real(6),
             sums_.real(7), sums_.real(8), sums_.real(9)};

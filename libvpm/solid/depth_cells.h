@@ -27,6 +27,7 @@ struct CutPoint {
   Vec3 place;
   int sign;
   std::size_t edge;
+  std::uint32_t segment = 0;  // of a triangle that is not cut into cells: as CutSegment::segment
 };
 
 // Triangle of a cell, and what cuts it.

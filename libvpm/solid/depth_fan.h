@@ -7,16 +7,10 @@
 #include <vector>
 
 #include "libvpm/solid/depth_cells.h"
-#include "libvpm/solid/depth_grid.h"
+#include "libvpm/solid/face_planes.h"
 #include "libvpm/solid/wide_sum.h"
 
 namespace vpm {
-
-// ∫ depth dA and ∫ depth x dA over a flat piece.
-struct DepthIntegral {
-  double volume = 0;
-  Vec3 moment;
-};
 
 class DepthFan {
  public:

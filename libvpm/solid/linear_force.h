@@ -1,7 +1,7 @@
 // Force of a depth that is linear over a piece of surface.
 #pragma once
 
-#include "libvpm/solid/depth_grid.h"
+#include "libvpm/solid/face_planes.h"
 #include "libvpm/solid/surface_moments.h"
 
 namespace vpm {
@@ -11,6 +11,11 @@ struct ForceAndTorque {
 };
 inline ForceAndTorque operator*(double weight, const ForceAndTorque& f) {
   return {weight * f.force, weight * f.torque};
+}
+
+// Returns ∫ -d n dA and ∫ -d x cross n dA over a flat piece with this unit normal.
+inline ForceAndTorque force_on_face(const DepthIntegral& of_depth, Vec3 normal) {
+  return {-of_depth.volume * normal, -cross(of_depth.moment, normal)};
 }
 
 // Returns ∫ -d n dA and ∫ -d x cross n dA over a piece with these moments, where d is linear:

@@ -66,10 +66,11 @@ SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
   tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_, with_depth);
   inside_ = std::make_unique<InsideIndex>(tree_->vertices(), tree_->triangles());
   volume_ = tree_->moments(0).flux() / 3;
-  if (with_depth) prepare_depth();
+  if (with_depth) planes_ = FacePlanes::of(tree_->vertices(), tree_->triangles(), reach_);
+  if (with_depth && !planes_) prepare_grid();
 }
 
-void SolidSurface::prepare_depth() {
+void SolidSurface::prepare_grid() {
   Box box;
   for (const Vec3& v : tree_->vertices()) box.add(v);
   grid_.emplace(
@@ -88,6 +89,10 @@ Depth SolidSurface::exact_depth(Vec3 x) const {
 }
 
 Depth SolidSurface::depth(Vec3 x) const {
+  if (planes_) {
+    const Depth below = planes_->depth(x);
+    return below.value >= 0 ? below : exact_depth(x);
+  }
   const Depth coarse = grid_->at(x);
   const double part = (coarse.value / grid_->cell() - kNearCells) / kMixedCells;  // of the grid's
   if (part >= 1) return coarse;
@@ -106,7 +111,8 @@ Depth SolidSurface::depth(Vec3 x) const {
 
 SphereState SolidSurface::state_of(Vec3 center, double radius) const {
   constexpr double kWrongCells = 2;  // by which the grid errs at creases
-  const double coarse = grid_->at(center).value, sure = radius + kWrongCells * grid_->cell();
+  const double coarse = planes_ ? planes_->depth(center).value : grid_->at(center).value,
+               sure = planes_ ? radius : radius + kWrongCells * grid_->cell();
   if (coarse > sure) return SphereState::inside;
   if (coarse < -sure) return SphereState::outside;
   if (tree_->closest(center, radius).triangle != SurfacePoint::kNone) return SphereState::boundary;
@@ -116,6 +122,7 @@ SphereState SolidSurface::state_of(Vec3 center, double radius) const {
 std::size_t SolidSurface::bytes() const {
   std::size_t sum = tree_->bytes() + inside_->bytes();
   if (grid_) sum += grid_->bytes();
+  if (planes_) sum += planes_->bytes();
   return sum;
 }
 

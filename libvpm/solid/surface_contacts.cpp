@@ -36,12 +36,6 @@ void add(SurfaceContact& sum, const SurfaceContact& c) {
   for (std::size_t k = 0; k < 2; ++k) take_deeper(sum.deepest[k], c.deepest[k]);
 }
 
-// Returns the middle of the part of a crossed triangle inside.
-Vec3 middle_of(const CrossedTriangle& triangle) {
-  const double area = triangle.area();
-  return area > 0 ? triangle.mean() / area : triangle.corner[0];
-}
-
 bool holds(const Box& box, const Box& other) {
   const Vec3 low = other.low - box.low, high = box.high - other.high;
   return std::min({low.x, low.y, low.z, high.x, high.y, high.z}) >= 0;
@@ -131,7 +125,7 @@ SurfacePair::LinearPiece SurfacePair::part_of(const LinearPiece& piece,
                                               const CrossedTriangle& part) {
   LinearPiece of_part = piece;
   of_part.force = piece.weight * linear_force(part.moments(), piece.depth, piece.place);
-  of_part.middle = middle_of(part);
+  of_part.middle = part.middle();
   return of_part;
 }
 
@@ -284,7 +278,7 @@ void SurfacePair::add_pieces(std::uint32_t largest) {
     const std::uint32_t contact = contact_of(piece);
     if (contact == largest) continue;
     RoleSums& sums = contact_sums_[contact][piece.role];
-    (piece.is_cut ? sums.cut_wrench : sums.whole_wrench).add(piece.force.force, piece.force.torque);
+    add_wrench(piece.is_cut ? sums.cut_wrench : sums.whole_wrench, piece.force);
   }
 }
 

@@ -46,6 +46,9 @@ constexpr double kPlausibleCells = 0.1;
 // From what part of a limit on one way of sampling gives way to another: between, both are mixed,
 // so that forces do not jump. Of errors, and of sizes.
 constexpr double kMixedErrors = 0.5, kMixedSizes = 0.95;
+// Scale of the sums of forces: one by which pieces of all of the area inside would be 1 or so, but
+// rounding of the largest pieces stays far below. Areas that are smaller are taken for this one.
+constexpr double kMostScale = 0x1p40, kLeastArea = 0x1p-200;
 // Pieces that tell how deep thin solids are.
 constexpr std::size_t kProbes = 8;
 
@@ -171,17 +174,24 @@ double SurfacePair::share_of_precise(std::size_t which, double error, double are
 
 // Adds the forces on all that is inside, after all moments are summed.
 void SurfacePair::add_forces() {
-  precision_ = precision();
+  const double area = std::max(roles_[0].sums.area.real(), roles_[1].sums.area.real());
+  wrench_scale_ = std::min(std::ldexp(1.0, -std::ilogb(std::max(area, kLeastArea))), kMostScale);
+  const bool is_below_planes[2] = {planes_below(0) != nullptr, planes_below(1) != nullptr};
+  if (!(is_below_planes[0] && is_below_planes[1])) precision_ = precision();
   for (std::size_t role = 0; role < 2; ++role) {
     face_ = 0;
     for (const CrossedTriangle& triangle : roles_[role].crossed) {
-      add_force_of_crossed(role, triangle);
+      is_below_planes[role] ? add_force_below_planes(role, triangle)
+                            : add_force_of_crossed(role, triangle);
       ++face_;
     }
   }
   face_ = kNone;
-  for (whole_ = 0; whole_ < whole_pieces_.size(); ++whole_)
-    add_force_of_whole(whole_pieces_[whole_].role, whole_pieces_[whole_].child);
+  for (whole_ = 0; whole_ < whole_pieces_.size(); ++whole_) {
+    const auto& [role, child, element] = whole_pieces_[whole_];
+    is_below_planes[role] ? add_force_of_whole_below_planes(role, child)
+                          : add_force_of_whole(role, child);
+  }
 }
 
 // Adds the force on all below a node, or on a triangle, which lies inside as a
@@ -224,14 +234,23 @@ double SurfacePair::add_force_of_patch(std::size_t which, std::uint32_t node, Fo
   foretold.depth = depth, foretold.place = middle, foretold.is_known = true;
   if (patch.radius > most || patch.thickness > kPatchThickness * depth.value || !(weight > 0))
     return 0;
+  add_force_of_node(which, node, depth, middle, weight);
+  return weight;
+}
+
+// Adds a weight of the force on what is below a node, over which the depth is linear: `depth` at a
+// place, in the surface's own frame.
+void SurfacePair::add_force_of_node(std::size_t which, std::uint32_t node, const Depth& depth,
+                                    Vec3 middle, double weight) {
+  Role& role = roles_[which];
   const double unit3 = weight * per_unit_ * per_unit_ * per_unit_, unit4 = unit3 * per_unit_;
   const ForceAndTorque f = linear_force_of(*role.tree, node, depth, middle);
   const ForceAndTorque added{unit3 * f.force, unit4 * f.torque};
-  role.sums.whole_wrench.add(added.force, added.torque);
+  add_wrench(role.sums.whole_wrench, added);
+  if (!with_contacts_) return;
   const SurfaceTree::Summary& below = role.tree->summaries()[node];
-  if (with_contacts_)
-    note_force_of_whole(which, added, depth, middle, patch.radius, below.first, below.end);
-  return weight;
+  note_force_of_whole(which, added, depth, middle, role.tree->patches()[node].radius, below.first,
+                      below.end);
 }
 
 // Returns how far a piece is taken without a second look.
@@ -267,7 +286,7 @@ void SurfacePair::add_force_of_triangle(std::size_t which, std::uint32_t triangl
   const ForceAndTorque f = linear_force(corners, depth, middle);
   const double unit3 = share * before.weight * per_unit_ * per_unit_ * per_unit_;
   const ForceAndTorque added{unit3 * f.force, unit3 * per_unit_ * f.torque};
-  role.sums.whole_wrench.add(added.force, added.torque);
+  add_wrench(role.sums.whole_wrench, added);
   if (with_contacts_)
     note_force_of_whole(which, added, depth, middle, role.solid->reach(), triangle, triangle + 1);
 }
@@ -375,9 +394,8 @@ class SurfacePair::CellVisitor {
   }
 
   void take(const DepthCell& cell, const Value& value, double weight) {
-    const auto& [volume, moment] = value.integral;
-    const ForceAndTorque f{-weight * volume * normal_, -weight * cross(moment, normal_)};
-    pair_.roles_[role_].sums.cut_wrench.add(f.force, f.torque);
+    const ForceAndTorque f = weight * force_on_face(value.integral, normal_);
+    pair_.add_wrench(pair_.roles_[role_].sums.cut_wrench, f);
     const Foretold& s = value.sampled;
     if (pair_.with_contacts_)
       pair_.note_force_of_cell(role_, cell, {s.depth, s.place, f, s.place, weight}, normal_);
@@ -463,9 +481,9 @@ std::optional<SurfacePair::LinearPiece> SurfacePair::add_force_of_cut(
     std::size_t which, const CrossedTriangle& triangle, std::span<const CutSegment> segments) {
   Foretold linear = plane_across(which, segments);
   if (!linear.is_known) return std::nullopt;
-  const double area = triangle.area();
-  const Vec3 middle = area > 0 ? triangle.mean() / area : triangle.corner[0];
-  if (area > 0) linear = mixed_with_depth(which, linear, share_of_agreeing(linear), middle);
+  const Vec3 middle = triangle.middle();
+  if (triangle.area() > 0)
+    linear = mixed_with_depth(which, linear, share_of_agreeing(linear), middle);
   LinearPiece piece = add_cut_force(which, triangle.moments(), linear, 1);
   piece.middle = middle;
   return piece;
@@ -536,7 +554,7 @@ SurfacePair::Foretold SurfacePair::depth_at(std::size_t which, Vec3 place) {
 SurfacePair::LinearPiece SurfacePair::add_cut_force(std::size_t which, const ForceMoments& moments,
                                                     const Foretold& linear, double weight) {
   const ForceAndTorque f = weight * linear_force(moments, linear.depth, linear.place);
-  roles_[which].sums.cut_wrench.add(f.force, f.torque);
+  add_wrench(roles_[which].sums.cut_wrench, f);
   return {linear.depth, linear.place, f, linear.place, weight};
 }
 

@@ -70,7 +70,7 @@ void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
     }
     stamp_ = 1;
   }
-  with_force_ = with_force, with_contacts_ = with_contacts;
+  with_force_ = with_force, with_contacts_ = with_contacts, wrench_scale_ = 1;
   contacts_.clear(), whole_pieces_.clear(), force_pieces_.clear();
   if (with_contacts && !parts_)
     parts_ = std::make_unique<ContactParts>(*roles_[0].tree, *roles_[1].tree);
@@ -78,6 +78,9 @@ void SurfacePair::start(const Pose& pose, bool with_force, bool with_contacts) {
   sums_ = {};
   roles_[0].to_first = {}, roles_[0].to_other = inverse(pose);
   roles_[1].to_first = pose, roles_[1].to_other = pose;
+  for (std::size_t k = 0; k < 2 && with_force; ++k)
+    if (const FacePlanes* planes = planes_below(k))
+      roles_[k].other_planes.place(*planes, roles_[1 - k].to_first, per_unit_);
   for (Role& role : roles_) {
     role.listed.clear();
     role.crossed.clear(), role.segments.clear(), role.points.clear();
@@ -181,7 +184,8 @@ void SurfacePair::note_cut(std::size_t which, CrossedTriangle& triangle,
   role.segments.emplace_back(segment, triangle.last_segment);
   triangle.last_segment = static_cast<std::uint32_t>(role.segments.size() - 1);
   for (const EdgeCrossing& at : crossings) {
-    const CutPoint point{per_unit_ * at.place, at.sign, static_cast<std::size_t>(at.edge)};
+    const CutPoint point{per_unit_ * at.place, at.sign, static_cast<std::size_t>(at.edge),
+                         segment.segment};
     role.points.emplace_back(point, triangle.last_point);
     triangle.last_point = static_cast<std::uint32_t>(role.points.size() - 1);
   }
@@ -302,7 +306,7 @@ SurfaceMoments SurfacePair::moments_of(const Role& role, const RoleSums& sums) c
 }
 
 InnerSurface SurfacePair::result(const Role& role, const RoleSums& sums) const {
-  const double unit3 = unit_ * unit_ * unit_, unit4 = unit3 * unit_;
+  const double unit3 = unit_ * unit_ * unit_ / wrench_scale_, unit4 = unit3 * unit_;
   const Vec3 force = role.to_first.rotation * (unit3 * sums.whole_wrench.force.real());
   const Vec3 torque = role.to_first.rotation * (unit4 * sums.whole_wrench.torque.real()) +
                       cross(role.to_first.translation, force);

@@ -14,6 +14,7 @@
 #include "libvpm/solid/crossed_triangle.h"
 #include "libvpm/solid/depth_cells.h"
 #include "libvpm/solid/depth_fan.h"
+#include "libvpm/solid/face_planes.h"
 #include "libvpm/solid/linear_force.h"
 #include "libvpm/solid/solid_surface.h"
 #include "libvpm/solid/tree_walk.h"
@@ -77,8 +78,8 @@ class SurfacePair {
   // unit.
   struct RoleSums {
     WideMoments cut, whole;
-    WideWrench cut_wrench, whole_wrench;
-    WideSum area;  // for forces
+    WideWrench cut_wrench, whole_wrench;  // times wrench_scale_
+    WideSum area;                         // for forces
     void subtract(const RoleSums& o);
   };
   // Part of a surface whose depth is taken for linear, and its force; in the first's frame and the
@@ -139,7 +140,8 @@ class SurfacePair {
     // counts more; and the largest pieces, m: nodes, cells, crossed triangles as a whole, and cells
     // that may stay for what samples tell, however deep they are.
     double ease = 1, largest_patch = 0, largest_cell = 0, largest_crossed = 0, largest_judged = 0;
-    Pose to_first, to_other;             // from its own frame
+    FacePlanes other_planes;  // if the other has few faces: in the first's frame and the unit
+    Pose to_first, to_other;  // from its own frame
     std::vector<std::uint32_t> listed;   // triangles that may meet the other's,
     std::vector<PlacedTriangle> placed;  // and these in the first's frame
     std::vector<CrossedTriangle> crossed;
@@ -172,16 +174,26 @@ class SurfacePair {
   InnerSurface result(const Role& role, const RoleSums& sums) const;
 
   // Of forces (surface_forces.cpp).
+  void add_wrench(WideWrench& sum, const ForceAndTorque& f) const {
+    sum.add(wrench_scale_ * f.force, wrench_scale_ * f.torque);
+  }
   void add_forces();
   Precision precision();
   double depth_of_largest();
   static void set_sizes(Role& role, const SolidSurface& other);
   double share_of_precise(std::size_t role, double error, double area) const;
   double share_of_small(double size, double most) const;
+  // Returns the planes of the other solid below which a surface's depth is told; null if it is
+  // sampled.
+  const FacePlanes* planes_below(std::size_t role) const {
+    return roles_[1 - role].solid->face_planes();
+  }
   void add_force_of_crossed(std::size_t role, const CrossedTriangle& triangle);
   void add_force_of_whole(std::size_t role, std::uint32_t child);
   void add_force_of_triangle(std::size_t role, std::uint32_t triangle, const Foretold& before);
   double add_force_of_patch(std::size_t role, std::uint32_t node, Foretold& foretold);
+  void add_force_of_node(std::size_t role, std::uint32_t node, const Depth& depth, Vec3 middle,
+                         double weight);
   void add_force_of_cells(std::size_t role, const DepthCell& cell, Vec3 normal, double weight);
   void add_force_of_small_cell(std::size_t role, const DepthCell& cell, Vec3 normal, double weight);
   static void add_cuts(const DepthCell& cell, CrossedTriangle& part);
@@ -196,6 +208,13 @@ class SurfacePair {
   Foretold depth_at(std::size_t role, Vec3 place);
   LinearPiece add_cut_force(std::size_t role, const ForceMoments& moments, const Foretold& linear,
                             double weight);
+
+  // Of forces below planes (plane_forces.cpp).
+  void add_force_below_planes(std::size_t role, const CrossedTriangle& triangle);
+  void add_force_of_whole_below_planes(std::size_t role, std::uint32_t child);
+  void note_force_below_planes(std::size_t role, std::uint32_t element,
+                               const DepthIntegral& integral, Vec3 normal,
+                               const FacePlanes::Near::OfTriangle& of_triangle);
 
   // Of contacts (surface_contacts.cpp).
   void note_whole(std::size_t role, std::uint32_t child);
@@ -233,7 +252,8 @@ class SurfacePair {
   std::vector<CutSegment> cut_segments_;  // of one triangle
   std::vector<CutPoint> cut_points_;
   std::uint32_t stamp_ = 0;
-  double unit_, per_unit_;  // m, a power of two that no coordinate exceeds, and its inverse
+  double unit_, per_unit_;   // m, a power of two that no coordinate exceeds, and its inverse
+  double wrench_scale_ = 1;  // a power of two that makes terms of wrenches 1 or so: sums round so
   bool with_force_ = false, with_contacts_ = false;
   bool is_one_contact_ = false;  // known before the sums, which then are its own
   SurfacePairSums sums_;

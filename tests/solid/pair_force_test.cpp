@@ -134,6 +134,64 @@ TEST(PairForce, OfConvexSolidsAgreesWithCubature) {
   }
 }
 
+// Returns a prism about the origin whose base has so many sides.
+Solid make_prism(std::uint32_t sides, double radius, double height) {
+  Solid prism;
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const double angle = 2 * M_PI * k / sides;
+    for (const double z : {-height / 2, height / 2})
+      prism.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+  }
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t low = 2 * k, next = 2 * ((k + 1) % sides);
+    prism.triangles.push_back({low, next, next + 1});
+    prism.triangles.push_back({low, next + 1, low + 1});
+    if (k == 0 || next == 0) continue;
+    prism.triangles.push_back({0, next, low});
+    prism.triangles.push_back({1, low + 1, next + 1});
+  }
+  return prism;
+}
+
+// The depth below a convex solid with few faces is not sampled: forces have no error but rounding
+// and the jitter, whatever the sizes, however thin the solids are, and however much they share.
+TEST(PairForce, OfConvexSolidsWithFewFacesIsExact) {
+  const Solid cube = make_cube(1), octahedron = synthetic::make_octahedron(1);
+  const std::pair<Solid, Solid> pairs[]{{cube, cube},
+                                        {make_tetrahedron(1.2), cube},
+                                        {octahedron, make_box(1, 1, .01)},
+                                        {make_box(1, 1, .01), cube},
+                                        {make_box(1, 1, .01), make_box(1, 1, .01)},
+                                        {make_box(.02, .02, 2), octahedron},
+                                        {make_prism(30, .5, 1), make_prism(5, .6, .4)},
+                                        {make_box(20, 15, 10), make_prism(8, .5, 1)}};
+  std::mt19937_64 random(3);
+  for (const auto& [solid_a, solid_b] : pairs) {
+    const auto a = surface(solid_a, true), b = surface(solid_b, true);
+    ASSERT_TRUE(a->face_planes() && b->face_planes());
+    const test::ConvexParts parts_a = test::one_part(solid_a), parts_b = test::one_part(solid_b);
+    SolidPair pair(a, b);
+    const double small = std::min(a->volume(), b->volume()),
+                 reach = std::min(a->reach(), b->reach());
+    int met = 0;
+    for (int k = 0; met < 12; ++k) {
+      ASSERT_LT(k, 1000);
+      const Pose pose_a = test::random_pose(random, .45 * b->reach()),
+                 pose_b = test::random_pose(random, .1);
+      const SharedSolid shared = pair.measure(pose_a, pose_b, true, 4);
+      const test::DepthTruth truth =
+          test::depth_truth(test::moved(parts_a, pose_a), test::moved(parts_b, pose_b));
+      if (shared.volume < 1e-6 * small) continue;
+      ++met;
+      EXPECT_LE(norm(shared.force - truth.force), 1e-7 * small) << k;
+      EXPECT_LE(norm(shared.torque - truth.torque), 1e-7 * small * reach) << k;
+      ASSERT_EQ(shared.contacts.size(), 1);
+      EXPECT_EQ(shared.contacts[0].force, shared.force);
+      EXPECT_GT(shared.contacts[0].depth, 0);
+    }
+  }
+}
+
 // Forces do not jump along paths in steps of a 4000th of the smaller reach: their second
 // differences are small. Tried are faces that are curved, large or flush, and plates and a needle,
 // whose cuts pass the corners of many small pieces.

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "libvpm/solid/surface_tree.h"
@@ -83,6 +85,86 @@ TEST(SolidSurface, DepthsBelowAFaceAreThoseOfItsPlane) {
     EXPECT_NEAR(found.value, depth, 1e-6);
     EXPECT_NEAR(found.gradient.z, -1, 1e-5);
     EXPECT_NEAR(std::hypot(found.gradient.x, found.gradient.y), 0, 1e-5);
+  }
+}
+
+// Returns a solid whose triangles are parted in four as often.
+Solid parted(Solid solid, int times) {
+  for (; times > 0; --times) {
+    Solid finer;
+    for (const auto& [i, j, k] : solid.triangles) {
+      const Vec3 a = solid.vertices[i], b = solid.vertices[j], c = solid.vertices[k];
+      const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+      for (const std::array<Vec3, 3>& part : {std::array{a, ab, ca}, std::array{ab, b, bc},
+                                              std::array{ca, bc, c}, std::array{ab, bc, ca}}) {
+        const auto first = static_cast<std::uint32_t>(finer.vertices.size());
+        finer.vertices.insert(finer.vertices.end(), part.begin(), part.end());
+        finer.triangles.push_back({first, first + 1, first + 2});
+      }
+    }
+    solid = finer;
+  }
+  return solid;
+}
+// Returns a solid as a file holds it whose numbers have 24 bits, turned.
+Solid as_in_a_file(Solid solid, const Rotation& turn) {
+  for (Vec3& v : solid.vertices) v = widen(narrow(turn * v));
+  return solid;
+}
+Solid together(Solid solid, const Solid& more, Vec3 by) {
+  const auto first = static_cast<std::uint32_t>(solid.vertices.size());
+  for (const Vec3& v : more.vertices) solid.vertices.push_back(v + by);
+  for (const auto& [a, b, c] : more.triangles)
+    solid.triangles.push_back({first + a, first + b, first + c});
+  return solid;
+}
+
+// Only solids that are convex and have few faces have planes that tell the depth.
+TEST(SolidSurface, KnowsThePlanesOfConvexSolidsWithFewFaces) {
+  const Solid cube = synthetic::make_cube(.1), plate = synthetic::make_box(1, 1, .001);
+  std::mt19937_64 random(7);
+  for (const Solid& solid : {cube, plate, parted(cube, 4), parted(plate, 3),
+                             synthetic::make_tetrahedron(1), synthetic::make_octahedron(1e-6)}) {
+    for (const bool is_turned : {false, true}) {
+      const Rotation turn = test::random_pose(random, 0).rotation;
+      const auto found = test::surface(is_turned ? as_in_a_file(solid, turn) : solid, true);
+      EXPECT_TRUE(found->face_planes()) << solid.triangles.size();
+      EXPECT_LE(found->bytes(), 1000 * found->triangles() + 10000);
+    }
+  }
+  Solid hollow = cube;
+  Solid wall = synthetic::make_cube(.05);
+  for (Triangle& t : wall.triangles) std::swap(t[1], t[2]);
+  hollow = together(hollow, wall, {});
+  Solid dented = parted(cube, 1);
+  for (Vec3& v : dented.vertices)
+    if (v == Vec3{.05, 0, 0}) v.x -= 1e-4;
+  for (const Solid& solid :
+       {hollow, dented, together(cube, cube, {.2, 0, 0}), together(cube, cube, {.05, .05, .05}),
+        synthetic::make_icosphere(.1, 2), synthetic::make_torus(.4, .1, 8, 4)}) {
+    const auto found = test::surface(solid, true);
+    EXPECT_FALSE(found->face_planes()) << solid.triangles.size();
+    EXPECT_TRUE(found->has_depth());
+  }
+}
+
+// Depths, and where balls are, are those of the nearest place of the surface, by planes as well.
+TEST(SolidSurface, PlanesTellWhatTheNearestPlaceTells) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> size(0, .5);
+  for (const Solid& solid : {synthetic::make_box(1, .8, .1), synthetic::make_octahedron(1)}) {
+    const auto found = test::surface(solid, true);
+    ASSERT_TRUE(found->face_planes());
+    for (int k = 0; k < 2000; ++k) {
+      const Vec3 x = test::random_pose(random, 1).translation;
+      const Depth nearest = found->exact_depth(x), told = found->depth(x);
+      EXPECT_NEAR(told.value, nearest.value, 1e-9);
+      const double radius = size(random);
+      if (std::abs(std::abs(nearest.value) - radius) < 1e-8) continue;
+      EXPECT_EQ(found->state_of(x, radius), nearest.value > radius    ? SphereState::inside
+                                            : nearest.value < -radius ? SphereState::outside
+                                                                      : SphereState::boundary);
+    }
   }
 }
 
