@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "libvpm/api/handle_access.h"
+#include "libvpm/api/overlap_answer.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/exact_pose.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/solid/box_pairs.h"
-#include "libvpm/solid/solid_surface.h"
 
 namespace vpm {
 namespace {
@@ -93,17 +93,48 @@ void check(std::span<const Part> parts, const OverlapOptions& options) {
   };
   const auto bare = std::ranges::find_if_not(parts, has_depth);
   const SolidBody& asked = (bare == parts.end() ? parts.front() : *bare).solid;
-  OverlapQuery(asked, asked, options);
+  const SolidSurface& surface = *HandleAccess::shared(asked);
+  OverlapAnswer(surface, surface, options);
+}
+
+// Returns what a device tells of each pair; nothing of what the host measures.
+std::vector<std::optional<SharedSolid>> told_by_device(std::span<const Part> parts,
+                                                       std::span<const BoxPair> pairs,
+                                                       const OverlapOptions& options) {
+  if (pairs.empty() || !is_for_device(options))
+    return std::vector<std::optional<SharedSolid>>(pairs.size());
+  std::vector<std::shared_ptr<const SolidSurface>> solids;
+  std::map<const SolidSurface*, std::uint32_t> places;  // in that list
+  const auto place_of = [&](const Part& part) {
+    const auto& solid = HandleAccess::shared(part.solid);
+    const auto [at, is_new] =
+        places.try_emplace(solid.get(), static_cast<std::uint32_t>(solids.size()));
+    if (is_new) solids.push_back(solid);
+    return at->second;
+  };
+  std::vector<SolidJob> jobs;
+  for (const auto& [first, second] : pairs)
+    jobs.push_back({place_of(parts[first]), place_of(parts[second]),
+                    exact_pose(parts[first].to_world), exact_pose(parts[second].to_world)});
+  return DeviceSolids(options.device, std::move(solids)).run(jobs);
+}
+
+// Returns what the parts of a pair share, as a device told it or as the host measures it.
+Overlap overlap_of(const Part& a, const Part& b, const std::optional<SharedSolid>& told,
+                   OverlapOptions options) {
+  options.device = {};
+  if (!told) return overlap(a.solid, a.to_world, b.solid, b.to_world, options);
+  return OverlapAnswer(*HandleAccess::shared(a.solid), *HandleAccess::shared(b.solid), options)
+      .of(*told);
 }
 
 // Returns the pair with what its parts share, or with the reason why that cannot be told; nothing
 // if the parts share no more than `volume_of_touch`, m^3, so that they may only touch.
 std::optional<OverlappingPair> measured(std::span<const Part> parts, const BoxPair& at,
-                                        double volume_of_touch, const OverlapOptions& options) {
-  const Part &a = parts[at.first], &b = parts[at.second];
-  OverlapQuery query(a.solid, b.solid, options);
+                                        double volume_of_touch, const OverlapOptions& options,
+                                        const std::optional<SharedSolid>& told) {
   try {
-    const Overlap shared = query.run(a.to_world, b.to_world);
+    const Overlap shared = overlap_of(parts[at.first], parts[at.second], told, options);
     if (shared.volume <= volume_of_touch) return std::nullopt;
     return OverlappingPair{at.first, at.second, shared, {}};
   } catch (const Error& error) {
@@ -120,12 +151,14 @@ std::vector<OverlappingPair> overlapping_pairs(std::span<const Part> parts,
   std::vector<Box> boxes;
   for (const PlacedPart& part : placed_parts) boxes.push_back(part.box);
   const std::vector<BoxPair> near = boxes_that_meet(boxes);
+  const auto told = told_by_device(parts, near, options);
   std::vector<std::optional<OverlappingPair>> found(near.size());
   parallel_for(near.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto [first, second] = near[k];
-      found[k] = measured(parts, near[k],
-                          volume_of_touch(placed_parts[first], placed_parts[second]), options);
+      found[k] =
+          measured(parts, near[k], volume_of_touch(placed_parts[first], placed_parts[second]),
+                   options, told[k]);
     }
   });
   std::vector<OverlappingPair> pairs;

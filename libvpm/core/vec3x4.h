@@ -20,9 +20,11 @@ namespace vpm {
 
 inline constexpr int kFour = 4;
 using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
+using FourNumbers = Double4;  // of text that devices share
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Int4 = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else none
+using Bits4 = std::uint64_t __attribute__((vector_size(4 * sizeof(std::uint64_t))));
 
 // Returns a bit per lane that is set, the first lane's lowest. Lanes have all bits set, or none.
 [[gnu::always_inline]] inline unsigned mask_of(Int4 lanes) {
@@ -54,6 +56,9 @@ template <class To, class From>
 }
 [[gnu::always_inline]] inline Mask4 negated(const Mask4& mask) {
   return ~mask;
+}
+[[gnu::always_inline]] inline Bits4 bits_where(const Mask4& mask, std::uint32_t bits) {
+  return reinterpret_cast<Bits4>(mask) & std::uint64_t{bits};
 }
 [[gnu::always_inline]] inline Double4 quotient(const Double4& a, const Double4& b) {
   return a / b;

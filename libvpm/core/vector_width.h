@@ -48,6 +48,10 @@ using RealOf = decltype(Place::x);
 [[gnu::always_inline]] VPM_HD inline bool widen_mask(bool mask) {
   return mask;
 }
+// Returns the bits where a comparison holds, else none.
+[[gnu::always_inline]] VPM_HD inline std::uint32_t bits_where(bool mask, std::uint32_t bits) {
+  return mask ? bits : 0;
+}
 [[gnu::always_inline]] VPM_HD inline Vec3 choose(bool mask, Vec3 a, Vec3 b) {
   return mask ? a : b;
 }
@@ -73,6 +77,37 @@ template <class Get>
 [[gnu::always_inline]] VPM_HD inline std::int32_t gather(const std::uint32_t* row, std::int32_t i) {
   return static_cast<std::int32_t>(row[i]);
 }
+
+// Four numbers side by side for device code, with what sums use of the operations of Double4.
+struct FourDoubles {
+  double number[4];
+
+  VPM_HD double operator[](int k) const { return number[k]; }
+  VPM_HD friend FourDoubles operator+(const FourDoubles& a, const FourDoubles& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+  }
+  VPM_HD friend FourDoubles operator-(const FourDoubles& a, const FourDoubles& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+  }
+  VPM_HD friend FourDoubles operator*(const FourDoubles& a, const FourDoubles& b) {
+    return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]};
+  }
+  VPM_HD friend FourDoubles operator+(const FourDoubles& a, double b) { return a + all_of(b); }
+  VPM_HD friend FourDoubles operator-(const FourDoubles& a, double b) { return a - all_of(b); }
+  VPM_HD friend FourDoubles operator*(double a, const FourDoubles& b) { return all_of(a) * b; }
+  VPM_HD friend FourDoubles operator/(const FourDoubles& a, double b) {
+    return {quotient(a[0], b), quotient(a[1], b), quotient(a[2], b), quotient(a[3], b)};
+  }
+  VPM_HD FourDoubles& operator+=(const FourDoubles& o) { return *this = *this + o; }
+  VPM_HD FourDoubles& operator-=(const FourDoubles& o) { return *this = *this - o; }
+
+ private:
+  VPM_HD static FourDoubles all_of(double a) { return {a, a, a, a}; }
+};
+
+#ifdef __CUDACC__
+using FourNumbers = FourDoubles;
+#endif
 
 }  // namespace vpm
 

@@ -11,14 +11,14 @@
 namespace vpm {
 namespace {
 
-constexpr int kAttempts = 6;
-
 // Moves of the second solid, in units of the jitter: small whole numbers without pattern, so that
 // identical solids at one place are in general position too.
-constexpr Vec3 kShifts[kAttempts]{{.31, -.47, .23},   {-.41, .29, .37}, {.19, .43, -.33},
-                                  {-.27, -.39, -.49}, {.45, .17, -.21}, {-.13, .35, .25}};
-constexpr Vec3 kTurns[kAttempts]{{.37, .21, -.43}, {.25, -.49, .31},  {-.45, .33, .17},
-                                 {.41, -.19, .29}, {-.23, -.35, .47}, {.15, .39, -.27}};
+constexpr Vec3 kShifts[OrderedPair::kAttempts]{{.31, -.47, .23}, {-.41, .29, .37},
+                                               {.19, .43, -.33}, {-.27, -.39, -.49},
+                                               {.45, .17, -.21}, {-.13, .35, .25}};
+constexpr Vec3 kTurns[OrderedPair::kAttempts]{{.37, .21, -.43},  {.25, -.49, .31},
+                                              {-.45, .33, .17},  {.41, -.19, .29},
+                                              {-.23, -.35, .47}, {.15, .39, -.27}};
 
 // Returns a motion of about the jitter: a rotation by less than 2^-36 is one of 1 and small
 // entries, exact in double.
@@ -47,51 +47,35 @@ Pose about_center(const Pose& pose, const SolidSurface& solid) {
 
 }  // namespace
 
-SolidPair::SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b)
+OrderedPair::OrderedPair(std::shared_ptr<const SolidSurface> a,
+                         std::shared_ptr<const SolidSurface> b)
     : order_(key_of(*a), key_of(*b)),
       first_(order_.is_turned() ? b : a),
-      second_(order_.is_turned() ? a : b),
-      surfaces_(*first_, *second_) {}
+      second_(order_.is_turned() ? a : b) {}
 
-SolidPair::Order SolidPair::order(const Pose& pose_a, const Pose& pose_b) const {
+OrderedPair::Place OrderedPair::place(const Pose& pose_a, const Pose& pose_b) const {
   const bool turned = order_.is_turned(pose_a, pose_b);
-  const Pose &first = turned ? pose_b : pose_a, &second = turned ? pose_a : pose_b;
-  return {turned, about_center(first, *first_), about_center(second, *second_)};
+  const Pose first = about_center(turned ? pose_b : pose_a, *first_),
+             second = about_center(turned ? pose_a : pose_b, *second_);
+  return {turned, first, relative_to(first, second)};
 }
 
-double SolidPair::closure(const SurfacePairSums& sums) const {
-  SurfaceMoments all = sums.inner[0].moments;
-  all.add(sums.inner[1].moments);
+bool OrderedPair::may_meet(const Place& place) const {
+  return !(norm(place.relative.translation) > (1 + 1e-9) * (first_->reach() + second_->reach()));
+}
+
+Pose OrderedPair::moved(const Place& place, int attempt) const {
+  return place.relative * small_motion(attempt, first_->reach());
+}
+
+double OrderedPair::closure(const std::array<InnerSurface, 2>& inner) const {
+  SurfaceMoments all = inner[0].moments;
+  all.add(inner[1].moments);
   const double reach = std::min(first_->reach(), second_->reach());
   return std::max(norm(all.area) / (reach * reach), norm(all.turn()) / (reach * reach * reach));
 }
 
-// Sums with one jitter after the other until the boundary closes.
-SurfacePairSums SolidPair::sums(const Pose& relative, bool with_force, bool with_contacts,
-                                SharedSolid& shared) {
-  double worst = 0;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const SurfacePairSums found =
-        surfaces_.run(relative * small_motion(attempt, first_->reach()), with_force, with_contacts);
-    ++shared.attempts;
-    const double gap = closure(found);
-    worst = std::max(worst, gap);
-    if (found.undecided > 0 || !(gap <= kMaxClosure)) continue;
-    shared.closure = std::max(shared.closure, gap);
-    return found;
-  }
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "the boundary of what the two solids share does not close: its area vectors miss by "
-      "%.1e of the smaller reach squared",
-      worst);
-  refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
-}
-
-// Returns what the parts of the two surfaces enclose, in the first's frame, with the torque about
-// the centroid. 0 without volume.
-SharedSolid SolidPair::shared_of(const std::array<InnerSurface, 2>& inner) const {
+SharedSolid OrderedPair::shared_of(const std::array<InnerSurface, 2>& inner) const {
   SharedSolid shared;
   const auto& [f, g] = inner;
   const SurfaceMoments &m = f.moments, &n = g.moments;
@@ -109,11 +93,25 @@ SharedSolid SolidPair::shared_of(const std::array<InnerSurface, 2>& inner) const
   return shared;
 }
 
+SharedSolid OrderedPair::in_world(SharedSolid shared, const Place& place) {
+  if (shared.volume == 0) return shared;
+  const double sign = place.is_turned ? -1 : 1;
+  const Rotation& to_world = place.first.rotation;
+  const auto turn = [&](Vec3& v) { v = sign * (to_world * v); };
+  turn(shared.area), turn(shared.turn), turn(shared.force), turn(shared.torque);
+  shared.centroid = place.first * shared.centroid;
+  for (SharedContact& contact : shared.contacts) {
+    turn(contact.area), turn(contact.force), turn(contact.torque);
+    contact.centroid = place.first * contact.centroid;
+  }
+  return shared;
+}
+
 // Returns the last contacts of the surfaces, in the first's frame, with torques about a point.
 std::vector<SharedContact> SolidPair::contacts(std::uint32_t count, Vec3 about) const {
   std::vector<std::pair<SharedContact, const SurfaceContact*>> all;
   for (const SurfaceContact& contact : surfaces_.contacts()) {
-    const SharedSolid s = shared_of(contact.inner);
+    const SharedSolid s = pair_.shared_of(contact.inner);
     if (s.volume == 0) continue;
     const Vec3 torque = s.torque + cross(s.centroid - about, s.force);
     all.push_back({{s.volume, s.centroid, s.area, s.force, torque, 0, 1}, &contact});
@@ -137,31 +135,37 @@ std::vector<SharedContact> SolidPair::contacts(std::uint32_t count, Vec3 about) 
   return listed;
 }
 
+// Measures with one jitter after the other until the boundary closes, in the first's frame.
+SharedSolid SolidPair::closed(const OrderedPair::Place& place, bool with_force,
+                              bool with_contacts) {
+  double worst = 0;
+  for (int attempt = 0; attempt < OrderedPair::kAttempts; ++attempt) {
+    const SurfacePairSums found =
+        surfaces_.run(pair_.moved(place, attempt), with_force, with_contacts);
+    const double gap = pair_.closure(found.inner);
+    worst = std::max(worst, gap);
+    if (found.undecided > 0 || !(gap <= kMaxClosure)) continue;
+    SharedSolid shared = pair_.shared_of(found.inner);
+    shared.closure = gap, shared.attempts = attempt + 1;
+    return shared;
+  }
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the boundary of what the two solids share does not close: its area vectors miss by "
+      "%.1e of the smaller reach squared",
+      worst);
+  refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
+}
+
 SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with_force,
                                std::uint32_t contact_count) {
-  const auto [turned, first, second] = order(pose_a, pose_b);
-  const Pose relative = relative_to(first, second);
-  SharedSolid shared;
-  const double apart = norm(relative.translation);
-  if (apart > (1 + 1e-9) * (first_->reach() + second_->reach())) return shared;
-  const SurfacePairSums found = sums(relative, with_force, contact_count > 0, shared);
-  const auto [volume, centroid, area, turn, force, torque, closure, attempts, none] =
-      shared_of(found.inner);
-  shared.volume = volume;
-  if (shared.volume == 0) return shared;
-  if (contact_count > 0) shared.contacts = contacts(contact_count, centroid);
-  const double sign = turned ? -1 : 1;
-  const Rotation& to_world = first.rotation;
-  const auto turn_to_world = [&](Vec3 v) { return sign * (to_world * v); };
-  shared.area = turn_to_world(area), shared.turn = turn_to_world(turn);
-  shared.force = turn_to_world(force), shared.torque = turn_to_world(torque);
-  shared.centroid = first * centroid;
-  for (SharedContact& contact : shared.contacts) {
-    contact.area = turn_to_world(contact.area);
-    contact.force = turn_to_world(contact.force), contact.torque = turn_to_world(contact.torque);
-    contact.centroid = first * contact.centroid;
-  }
-  return shared;
+  const OrderedPair::Place place = pair_.place(pose_a, pose_b);
+  if (!pair_.may_meet(place)) return {};
+  SharedSolid shared = closed(place, with_force, contact_count > 0);
+  if (contact_count > 0 && shared.volume > 0)
+    shared.contacts = contacts(contact_count, shared.centroid);
+  return OrderedPair::in_world(std::move(shared), place);
 }
 
 }  // namespace vpm

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "libvpm/solid/pair_order.h"
@@ -43,11 +44,49 @@ struct SharedSolid {
   Vec3 torque_about(Vec3 x) const { return torque + cross(centroid - x, force); }
 };
 
+// Two solids in the one order in which a pair is computed, and what follows from sums over their
+// surfaces. Immutable.
+class OrderedPair {
+ public:
+  static constexpr int kAttempts = 6;  // with different jitter, at most
+
+  // Shares the surfaces.
+  OrderedPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b);
+
+  const SolidSurface& first() const { return *first_; }
+  const SolidSurface& second() const { return *second_; }
+
+  // Whether the surfaces are `turned` into the one order, the first's pose with the origin at its
+  // centre of mass, and that of the second in the first's frame.
+  struct Place {
+    bool is_turned;
+    Pose first, relative;
+  };
+  // Takes poses that map the surfaces' meshes to the world.
+  Place place(const Pose& pose_a, const Pose& pose_b) const;
+  // Returns whether the solids are near enough to share anything.
+  bool may_meet(const Place& place) const;
+  // Returns the relative pose with the small motion of an attempt.
+  Pose moved(const Place& place, int attempt) const;
+  // Returns how far sums over both surfaces are from closed, as SharedSolid::closure.
+  double closure(const std::array<InnerSurface, 2>& inner) const;
+  // Returns what the parts of the two surfaces enclose, in the first's frame, with the torque about
+  // the centroid. 0 without volume.
+  SharedSolid shared_of(const std::array<InnerSurface, 2>& inner) const;
+  // Returns that for the world, and for a in place of the first.
+  static SharedSolid in_world(SharedSolid shared, const Place& place);
+
+ private:
+  PairOrder order_;
+  std::shared_ptr<const SolidSurface> first_, second_;
+};
+
 // Pair of solids, prepared to be asked at many poses. Belongs to one thread.
 class SolidPair {
  public:
   // Shares the surfaces.
-  SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b);
+  SolidPair(std::shared_ptr<const SolidSurface> a, std::shared_ptr<const SolidSurface> b)
+      : pair_(std::move(a), std::move(b)), surfaces_(pair_.first(), pair_.second()) {}
 
   // Measures at poses that map the surfaces' meshes to the world; both must be rigid. a and b
   // swapped give the same bits, with signs of area, turn, force and torque turned, since a pair is
@@ -61,21 +100,10 @@ class SolidPair {
   static constexpr double kMaxClosure = 1e-8;
 
  private:
-  // Whether the surfaces are `turned` into the one order, and their poses with the origin at the
-  // centres of mass.
-  struct Order {
-    bool is_turned;
-    Pose first, second;
-  };
-  Order order(const Pose& pose_a, const Pose& pose_b) const;
-  SurfacePairSums sums(const Pose& relative, bool with_force, bool with_contacts,
-                       SharedSolid& shared);
-  SharedSolid shared_of(const std::array<InnerSurface, 2>& inner) const;
+  SharedSolid closed(const OrderedPair::Place& place, bool with_force, bool with_contacts);
   std::vector<SharedContact> contacts(std::uint32_t count, Vec3 about) const;
-  double closure(const SurfacePairSums& sums) const;
 
-  PairOrder order_;
-  std::shared_ptr<const SolidSurface> first_, second_;  // in that order
+  OrderedPair pair_;
   SurfacePair surfaces_;
 };
 

@@ -42,7 +42,9 @@ class SolidSurface {
   std::size_t bytes() const;
 
   // True if x, own frame, lies inside.
-  bool holds(Vec3 x) const { return inside_->holds(x, tree_->vertices(), tree_->triangles()); }
+  bool holds(Vec3 x) const { return inside_view().holds(x); }
+  const InsideIndex& inside() const { return *inside_; }
+  InsideView inside_view() const { return inside_->view(tree_->vertices(), tree_->triangles()); }
   // Returns the depth of x below the surface: by face_planes(), or else by the grid where it is
   // deep and by the closest point near the surface. Needs has_depth().
   Depth depth(Vec3 x) const;

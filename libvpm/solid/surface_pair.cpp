@@ -11,14 +11,14 @@ namespace {
 // Triangles whose memory is asked for before they are placed.
 constexpr std::size_t kAhead = 6;
 
-// Returns a power of two that is larger than any coordinate where the solids can meet.
-double unit_for(double reach, double other_reach) {
-  int exponent = 0;
-  std::frexp(reach + 2 * other_reach, &exponent);
-  return std::ldexp(1.0, exponent);
-}
-
 }  // namespace
+
+SurfaceMoments SurfacePair::moments_of(const SurfaceMoments& whole, const SurfaceMoments& cut,
+                                       double unit, const Pose& to_first) {
+  SurfaceMoments moments = moved(scaled(whole, unit), to_first);
+  moments.add(scaled(cut, unit));
+  return moments;
+}
 
 SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     : unit_(unit_for(first.reach(), second.reach())), per_unit_(1 / unit_) {
@@ -92,8 +92,8 @@ PlacedTriangle SurfacePair::placed(const Role& role, std::uint32_t triangle) con
   std::array<Vec3, 3> corners = role.tree->corners(triangle);
   if (&role == &roles_[1])
     for (Vec3& corner : corners) corner = role.to_first * corner;
-  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return {corners, normal, role.tree->longest_edge(triangle), role.tree->triangles()[triangle]};
+  return placed_triangle(corners, role.tree->longest_edge(triangle),
+                         role.tree->triangles()[triangle]);
 }
 
 // Returns the triangle's place in the role's lists for this pose.
@@ -300,9 +300,7 @@ void SurfacePair::note_whole(std::size_t which, std::uint32_t child) {
 }
 
 SurfaceMoments SurfacePair::moments_of(const Role& role, const RoleSums& sums) const {
-  SurfaceMoments moments = moved(scaled(sums.whole.real(), unit_), role.to_first);
-  moments.add(scaled(sums.cut.real(), unit_));
-  return moments;
+  return moments_of(sums.whole.real(), sums.cut.real(), unit_, role.to_first);
 }
 
 InnerSurface SurfacePair::result(const Role& role, const RoleSums& sums) const {

@@ -59,6 +59,11 @@ class SurfacePair {
  public:
   SurfacePair(const SolidSurface& first, const SolidSurface& second);
 
+  // Returns the moments of a surface's part inside, in the first's frame, of its sums in the unit:
+  // those of what is inside as a whole, in its own frame, and of crossed triangles in the first's.
+  static SurfaceMoments moments_of(const SurfaceMoments& whole, const SurfaceMoments& cut,
+                                   double unit, const Pose& to_first);
+
   // Sums at a pose, which maps the second's frame to the first's. Allocates nothing once its lists
   // have grown. The order of triangles changes no bit of the sums.
   SurfacePairSums run(const Pose& pose, bool with_force, bool with_contacts = false);

@@ -8,17 +8,10 @@
 
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/model/solid.h"
+#include "libvpm/solid/surface_bounds.h"
 #include "libvpm/solid/surface_moments.h"
 
 namespace vpm {
-
-// Box and slab of a piece of surface, padded so that floats never hide it.
-struct SurfaceBounds {
-  std::array<float, 3> center, half;  // box, m
-  std::array<float, 3> normal;        // of the slab, unit length
-  float offset, width;                // |normal.x - offset| <= width, m
-  float size;                         // of the box; 0 for one triangle
-};
 
 class SurfaceTree {
  public:

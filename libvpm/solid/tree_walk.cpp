@@ -52,17 +52,6 @@ constexpr float kLarger = 2;
 
 }  // namespace
 
-FloatPose::FloatPose(const Pose& pose) {
-  const auto& [x, y, z] = pose.rotation;
-  const std::array<double, 9> rows{x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
-  for (std::size_t k = 0; k < 9; ++k) {
-    rotation[k] = static_cast<float>(rows[k]);
-    size[k] = std::fabs(rotation[k]) + 1e-6f;
-  }
-  const Vec3f t = narrow(pose.translation);
-  translation = {t.x, t.y, t.z};
-}
-
 PlacedBounds::PlacedBounds(const SurfaceBounds& piece, const Pose& pose)
     : pose_(pose), own_half_(piece.half), width_(piece.width) {
   const auto& r = pose_.rotation;

@@ -12,13 +12,6 @@
 
 namespace vpm {
 
-// Motion from one frame to another in floats, for bounds that are padded for that.
-struct FloatPose {
-  explicit FloatPose(const Pose& pose);
-  std::array<float, 9> rotation, size;  // rows; size: magnitudes, a little more
-  std::array<float, 3> translation;
-};
-
 // Bounds of a piece of a surface, to be asked by nodes of the other, in whose frame they are
 // placed.
 class PlacedBounds {

@@ -2,11 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
-#include "libvpm/core/vec3x4.h"
 #include "libvpm/solid/surface_moments.h"
 
 namespace vpm {
+
+// Returns the unit in which a pair of solids is summed, m: a power of two that is larger than any
+// coordinate where they can meet, in the first's frame.
+inline double unit_for(double reach, double other_reach) {
+  int exponent = 0;
+  std::frexp(reach + 2 * other_reach, &exponent);
+  return std::ldexp(1.0, exponent);
+}
 
 // Splits each term at 2^-34 and 2^-70, by rounding against a large constant (Demmel and Nguyen,
 // "Fast reproducible floating-point summation", 2013), and adds both parts in doubles that hold
@@ -14,18 +22,19 @@ namespace vpm {
 // summed is scaled by powers of two. Needs rounding to nearest, and no contraction.
 class WideSum {
  public:
-  void add(double term) { add(term, high_, low_); }
+  VPM_HD void add(double term) { add(term, high_, low_); }
   // Adds the parts of a term, or of several side by side, to the sums of these parts.
   template <class Number>
-  [[gnu::always_inline]] static void add(const Number& term, Number& high_sum, Number& low_sum) {
+  [[gnu::always_inline]] VPM_HD static void add(const Number& term, Number& high_sum,
+                                                Number& low_sum) {
     const Number high = (term + kHigh) - kHigh;
     const Number low = ((term - high) + kLow) - kLow;
     high_sum += high;
     low_sum += low;
   }
   // Takes a sum of some of the terms away, exactly.
-  void subtract(const WideSum& o) { high_ -= o.high_, low_ -= o.low_; }
-  double real() const { return high_ + low_; }
+  VPM_HD void subtract(const WideSum& o) { high_ -= o.high_, low_ -= o.low_; }
+  VPM_HD double real() const { return high_ + low_; }
 
  private:
   static constexpr double kHigh = 1.5 * 0x1p18, kLow = 1.5 * 0x1p-18;  // 2^52 times the grids
@@ -43,33 +52,33 @@ class WideVec3 {
 };
 
 // 4 N sums side by side, four in each element; that of term k is in lane k % 4 of element k / 4.
-template <std::size_t N>
+template <std::size_t N, class Four = FourNumbers>
 class WideSums {
  public:
-  using Terms = std::array<Double4, N>;
+  using Terms = std::array<Four, N>;
 
-  [[gnu::always_inline]] void add(const Terms& terms) {
+  [[gnu::always_inline]] VPM_HD void add(const Terms& terms) {
     for (std::size_t k = 0; k < N; ++k) WideSum::add(terms[k], high_[k], low_[k]);
   }
   void subtract(const WideSums& o) {
     for (std::size_t k = 0; k < N; ++k) high_[k] -= o.high_[k], low_[k] -= o.low_[k];
   }
-  double real(std::size_t k) const {
+  VPM_HD double real(std::size_t k) const {
     const auto lane = static_cast<int>(k % 4);
     return high_[k / 4][lane] + low_[k / 4][lane];
   }
 
  private:
   // GCC aligns vectors less in functions that are not compiled for AVX.
-  alignas(sizeof(Double4)) Terms high_{}, low_{};
+  alignas(sizeof(Four)) Terms high_{}, low_{};
 };
 
 class WideMoments {
  public:
   [[gnu::always_inline]] void add(const SurfaceMoments& m) {
     const auto& [a, x, y, z, f] = m;
-    sums_.add({Double4{a.x, a.y, a.z, x.x}, Double4{x.y, x.z, y.x, y.y},
-               Double4{y.z, z.x, z.y, z.z}, Double4{f.x, f.y, f.z, 0}});
+    sums_.add({FourNumbers{a.x, a.y, a.z, x.x}, FourNumbers{x.y, x.z, y.x, y.y},
+               FourNumbers{y.z, z.x, z.y, z.z}, FourNumbers{f.x, f.y, f.z, 0}});
   }
   void subtract(const WideMoments& o) { sums_.subtract(o.sums_); }
   SurfaceMoments real() const {

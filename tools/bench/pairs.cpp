@@ -1,8 +1,10 @@
 // Measures one solid against another: the error of the volume, closure, jumps along a path, time at
 // poses where both share 0, 5 and 30 % of the smaller solid, memory, and time to prepare. Measures
-// the same poses by the spheres of both solids, too, as --measure paper does.
+// the same poses by the spheres of both solids, too, as --measure paper does. On a device it also
+// times volumes there, one by one and in batches.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,6 +13,7 @@
 #include "libvpm/core/exact_pose.h"
 #include "libvpm/graph/hierarchy.h"
 #include "libvpm/packing/packer.h"
+#include "libvpm/solid/device_solids.h"
 #include "libvpm/solid/solid_pair.h"
 #include "libvpm/solid/sphere_pair.h"
 #include "libvpm/synthetic/shared_volume.h"
@@ -82,6 +85,7 @@ class MeasuredPair {
   }
 
   double worst_error() const { return worst_error_; }
+  bool is_same_on_device() const { return is_same_on_device_; }
 
  private:
   static PairOfSolids about_centers(PairOfSolids pair) {
@@ -170,6 +174,39 @@ class MeasuredPair {
         {"volume", times_of(poses, [&](const Pose& p) { pair_->measure({}, p, false); })},
         {"force", times_of(poses, [&](const Pose& p) { pair_->measure({}, p); })},
         {"spheres", times_of(poses, [&](const Pose& p) { spheres(p); })}};
+    if (fraction > 0 && fraction < .1 && options_.device.is_cuda()) time_on_device(poses);
+  }
+
+  // Times volumes on the device by the wall's clock, one by one and in a batch that takes the poses
+  // again and again, and compares them with the CPU's.
+  void time_on_device(const std::vector<Pose>& poses) {
+    const auto wall_seconds = [] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+          .count();
+    };
+    DeviceSolids device(options_.device, {a_, b_});
+    const std::size_t count = options_.quick ? 64 : 32768;
+    std::vector<SolidJob> jobs(count);
+    for (std::size_t k = 0; k < count; ++k) jobs[k] = {0, 1, {}, poses[k % poses.size()]};
+    std::size_t left = 0;  // to the host
+    std::vector<double> batches, singles;
+    for (int run = 0; run < (options_.quick ? 2 : 5); ++run) {
+      double start = wall_seconds();
+      const auto answers = device.run(jobs);
+      batches.push_back(1e6 * (wall_seconds() - start) / static_cast<double>(count));
+      for (std::size_t k = 0; k < poses.size(); ++k) {
+        start = wall_seconds();
+        const auto alone = device.run({&jobs[k], 1}).front();
+        singles.push_back(1e6 * (wall_seconds() - start));
+        left += run == 0 && !alone;
+        const double expected = volume(poses[k]);
+        for (const auto& answer : {alone, answers[k]})
+          is_same_on_device_ = is_same_on_device_ && (!answer || answer->volume == expected);
+      }
+    }
+    json_["us_on_device"] = {{"launched", spread_of(singles).median},
+                             {"in_batch", spread_of(batches).median},
+                             {"left_to_host", left}};
   }
 
   // Returns the median and the worst over the poses, of the median of several runs each, us.
@@ -197,6 +234,7 @@ class MeasuredPair {
   SpherePair sphere_pair_;
   double smaller_ = 0, build_seconds_ = 0, worst_error_ = 0, worst_closure_ = 0;
   double worst_of_spheres_ = 0;
+  bool is_same_on_device_ = true;
   nlohmann::json json_;
 };
 
@@ -212,6 +250,9 @@ void add_line(const nlohmann::json& r, Report& report) {
        us("30 %", "volume", "median"), us("30 %", "force", "median"),
        r["build_seconds"].get<double>(), 1e-6 * r["bytes"].get<double>(),
        r["volume_error_of_spheres"].get<double>(), us("5 %", "spheres", "median")});
+  if (r.contains("us_on_device"))
+    for (const char* how : {"launched", "in_batch"})
+      report.table.rows.back().push_back(r["us_on_device"][how].get<double>());
   char line[160];
   std::snprintf(
       line, sizeof line, "%-24s %9.1e %9.1e %7.1f %7.1f [%5.0f] %7.1f [%5.0f] %7.1f %7.0e %6.1f\n",
@@ -245,6 +286,8 @@ Report run_pairs(const SuiteOptions& options) {
                           "memory_mb",
                           "volume_error_spheres",
                           "us_5_spheres"};
+  if (options.device.is_cuda())
+    report.table.columns.insert(report.table.columns.end(), {"us_5_launched", "us_5_in_batch"});
   report.summary =
       "pair                     volume    closure  us: 0 %  5 % volume [worst] 5 % force [worst] "
       "30 %  spheres: volume, us\n";
@@ -258,6 +301,8 @@ Report run_pairs(const SuiteOptions& options) {
     add_line(report.results.back(), report);
     if (!(pair.worst_error() <= kMaxVolumeError))
       report.failure = "the volume of " + pairs[k].name + " is wrong by more than a millionth";
+    if (!pair.is_same_on_device())
+      report.failure = "the volume of " + pairs[k].name + " has other bits on the device";
   }
   return report;
 }

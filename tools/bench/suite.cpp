@@ -27,7 +27,7 @@ constexpr Suite kSuites[] = {
     {"extremes", run_extremes, 0, Place::either},
     {"intervals", run_intervals},
     {"packing", run_packing, kAll | kMeshes},
-    {"pairs", run_pairs, kMeshes},
+    {"pairs", run_pairs, kMeshes, Place::either},
     {"peers", run_peers, kMeshes | kData},
     {"replay", run_replay, kData, Place::either},
     {"scaling", run_scaling, kAll, Place::device},

@@ -133,7 +133,8 @@ std::size_t say_refusals(const Program& program, const Assembly& assembly,
 }  // namespace
 
 void run_pairs(Program& program, const Arguments& a) {
-  if (program.common().device != "auto") program.device();  // which must be there
+  // Most assemblies take less time than a device to begin, so one must be named.
+  const Device device = program.common().device == "auto" ? Device{} : program.device();
   Assembly assembly = read_assembly(a.pairs);
   if (!a.poses.empty()) place_parts(assembly, a.poses.front());
   note_deviation(program, assembly.path, assembly.largest_deviation);
@@ -141,9 +142,10 @@ void run_pairs(Program& program, const Arguments& a) {
   const double metres = metres_of_unit(unit).value();
   const PreparedParts prepared = prepare_parts(
       program, assembly, metres, solid_options_of(a, assembly, metres), a.contacts > 0);
-  const std::vector<OverlappingPair> found = overlapping_pairs(
-      prepared.parts,
-      {.with_force = a.contacts > 0, .contacts = static_cast<std::uint32_t>(a.contacts)});
+  const std::vector<OverlappingPair> found =
+      overlapping_pairs(prepared.parts, {.with_force = a.contacts > 0,
+                                         .contacts = static_cast<std::uint32_t>(a.contacts),
+                                         .device = device});
   PairLines pairs(a, assembly, prepared, unit);
   for (const OverlappingPair& pair : found)
     if (pair.refusal.empty()) pairs.add(pair);

@@ -74,8 +74,7 @@ class VPM_API SolidMesh {
                                   std::span<const std::array<std::uint32_t, 3>> triangles,
                                   const SolidOptions& options = {});
 
-  // Returns the volume that is enclosed at least once, m^3.
-  double volume() const;
+  double volume() const;  // that is enclosed at least once, m^3
   std::size_t vertices() const;
   std::size_t triangles() const;
   // Returns what was mended, and what was accepted though it may surprise, in sentences.
@@ -157,14 +156,10 @@ class VPM_API SolidBody {
   // This and all below is in the library vpm. Throws Error(refused) for a model without a surface.
   explicit SolidBody(const Tool& tool, bool with_force = true);
 
-  // Returns the volume, m^3.
-  double volume() const;
-  // Returns the centre of mass in the mesh's frame, m.
-  Vec3 center_of_mass() const;
-  // Returns the largest distance of a point of the solid from the centre of mass, m.
-  double radius() const;
-  // Returns the number of triangles that bound the solid.
-  std::size_t triangles() const;
+  double volume() const;          // m^3
+  Vec3 center_of_mass() const;    // in the mesh's frame, m
+  double radius() const;          // largest distance of a point of the solid from that, m
+  std::size_t triangles() const;  // that bound the solid
 
  private:
   friend HandleAccess;
@@ -205,6 +200,7 @@ struct OverlapOptions {
   bool with_force = true;      // false leaves the wrench 0 and takes less time
   double stiffness = 1;        // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
   std::uint32_t contacts = 0;  // listed each by itself; all others are summed in one. 0: none
+  Device device = {};  // for volumes alone: the CPU measures wrenches and contacts. Same bits
 };
 
 // Measures two solids at many poses. Shares the bodies, so nothing dangles. Belongs to one thread
@@ -213,7 +209,7 @@ struct OverlapOptions {
 class VPM_API OverlapQuery {
  public:
   // Throws Error(invalid_argument) for a stiffness that is not positive and finite, and for forces
-  // of bodies made without.
+  // of bodies made without; Error(unavailable) if the device is not there, as run() if it fails.
   OverlapQuery(const SolidBody& a, const SolidBody& b, const OverlapOptions& options = {});
   ~OverlapQuery();
   OverlapQuery(OverlapQuery&&) noexcept;
@@ -225,6 +221,10 @@ class VPM_API OverlapQuery {
   // origin, and if the boundary of what is shared does not close, which is a defect of a mesh: no
   // answer is given then.
   Overlap run(const Pose& pose_a, const Pose& pose_b);
+
+  // Stores the answers for a[k] and b[k] as those of one by one: a device takes thousands at once,
+  // the CPU uses several threads. Throws Error(invalid_argument) unless there are as many of each.
+  void run(std::span<const Pose> a, std::span<const Pose> b, std::span<Overlap> answers);
 
  private:
   struct Impl;
