@@ -55,6 +55,40 @@ TEST(Overlap, OfSwappedSolidsHasTheOppositeWrenchInTheSameBits) {
   EXPECT_EQ(there.wrench.torque.z, -back.wrench.torque.z);
 }
 
+// Poses of a batch have the answers of one by one, with forces and contacts as well.
+TEST(Overlap, OfManyPosesIsThatOfEach) {
+  const vpm::SolidBody a(box(.1, .1, .1)), b(box(.1, .2, .3));
+  vpm::OverlapQuery query(a, b, {.stiffness = 100, .contacts = 2});
+  std::vector<vpm::Pose> of_a, of_b;
+  for (int k = 0; k < 70; ++k) {
+    of_a.push_back({{}, {.001 * k, 0, 0}});
+    of_b.push_back({{}, {.05, .02, -.003 * k}});
+  }
+  std::vector<vpm::Overlap> answers(of_a.size());
+  query.run(of_a, of_b, answers);
+  for (std::size_t k = 0; k < answers.size(); ++k)
+    EXPECT_EQ(answers[k], query.run(of_a[k], of_b[k])) << k;
+  EXPECT_GT(answers.back().volume, 0);
+  answers.pop_back();
+  EXPECT_EQ(kind_of([&] { query.run(of_a, of_b, answers); }), vpm::ErrorKind::invalid_argument);
+}
+
+// Bodies without forces are enough for a device; where it is not there, that is told at once.
+TEST(Overlap, OnADeviceHasTheSameBits) {
+  const vpm::SolidBody a(box(.1, .1, .1), false);
+  const vpm::OverlapOptions on_device{.with_force = false, .device = {vpm::Device::Kind::cuda}};
+  if (vpm::cuda_device_count() == 0) {
+    EXPECT_EQ(kind_of([&] { vpm::OverlapQuery(a, a, on_device); }), vpm::ErrorKind::unavailable);
+    GTEST_SKIP() << "no CUDA device here";
+  }
+  const std::vector<vpm::Part> parts{{a, {}}, {a, {{}, {.05, .02, .01}}}, {a, {{}, {.1, 0, 0}}}};
+  const auto here = vpm::overlapping_pairs(parts, {.with_force = false}),
+             there = vpm::overlapping_pairs(parts, on_device);
+  ASSERT_EQ(here.size(), there.size());
+  for (std::size_t k = 0; k < here.size(); ++k) EXPECT_EQ(here[k].overlap, there[k].overlap);
+  EXPECT_EQ(vpm::overlap(a, {}, a, parts[1].to_world, on_device), here.front().overlap);
+}
+
 TEST(Overlap, StiffnessMakesNewtons) {
   const vpm::SolidBody a(box(.1, .1, .1)), b(box(2, 2, 2));
   const vpm::Pose pose{{}, {1, 1, 1.95}};

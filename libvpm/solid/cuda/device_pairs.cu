@@ -12,9 +12,10 @@
 namespace vpm::cuda {
 namespace {
 
-// Threads of the block that answers a single pose, and of each in a batch.
-constexpr unsigned kSinglePoseThreads = 512, kPairThreads = 128;
-constexpr unsigned kPairBlocks = 8;  // most on a multiprocessor
+// Blocks that share a single pose, their threads, and those of each block in a batch.
+constexpr unsigned kSinglePoseBlocks = 16, kSinglePoseThreads = 512, kPairThreads = 128;
+// Of those on a multiprocessor. More would leave each thread fewer registers than it takes.
+constexpr unsigned kPairBlocks = 4;
 // Segments of a pose that there is room for: bunny-spot at 5 % has 295.
 constexpr std::uint32_t kMostSegments = 4096;
 
@@ -30,10 +31,13 @@ struct PairWords {
 };
 
 __global__ void __launch_bounds__(kSinglePoseThreads)
-    single_pair(PairView pair, PairRoom room, Pose pose, PairWords* answer, unsigned sequence) {
+    single_pair(PairView pair, PairRoom room, Pose pose, PairCounts* shared, PairWords* answer,
+                unsigned sequence) {
+  PairMeasure<kSinglePoseThreads> measure(pair, room);
+  if (!measure.run_part(pose, *shared, {blockIdx.x, gridDim.x})) return;
   bool has_room = false;
   unsigned undecided = 0;
-  const double sum = PairMeasure<kSinglePoseThreads>(pair, room).run(pose, has_room, undecided);
+  const double sum = measure.finish(has_room, undecided);
   const unsigned k = threadIdx.x;
   if (k < PairAnswer::kSums) {
     const auto* const halves = reinterpret_cast<const std::uint32_t*>(&sum);
@@ -45,7 +49,7 @@ __global__ void __launch_bounds__(kSinglePoseThreads)
 }
 
 // Each block takes the next job when it has answered one.
-__global__ void __launch_bounds__(kPairThreads)
+__global__ void __launch_bounds__(kPairThreads, kPairBlocks)
     many_pairs(const PairView* pairs, const PairRoom* rooms, const PairJob* jobs, unsigned count,
                std::size_t shared_bytes, unsigned* next, PairAnswer* answers) {
   __shared__ unsigned job;
@@ -127,7 +131,9 @@ class PairRooms {
 
 class PairsOnDevice : public DevicePairs {
  public:
-  PairsOnDevice(int device, std::span<const SurfaceView> surfaces) : device_(device), next_(1) {
+  PairsOnDevice(int device, std::span<const SurfaceView> surfaces)
+      : device_(device), shared_(1), next_(1) {
+    shared_.clear();
     for (const SurfaceView& surface : surfaces) {
       copies_.emplace_back(surface);
       most_triangles_ = std::max(most_triangles_, copies_.back().view().triangle_count);
@@ -172,9 +178,9 @@ class PairsOnDevice : public DevicePairs {
     const std::size_t bytes = PairLists<kSinglePoseThreads>::bytes(pair);
     if (bytes + kStaticShared > most_shared_) return {};
     if (!single_room_) single_room_ = std::make_unique<PairRooms>(1, 2 * most_triangles_);
-    launch_kernel(single_pair, {1, kSinglePoseThreads, bytes}, LaunchKind::independent,
-                  stream_.get(), pair, single_room_->rooms[0], job.pose, answer_.device(),
-                  ++sequence_);
+    launch_kernel(single_pair, {kSinglePoseBlocks, kSinglePoseThreads, bytes},
+                  LaunchKind::independent, stream_.get(), pair, single_room_->rooms[0], job.pose,
+                  shared_.get(), answer_.device(), ++sequence_);
     return wait();
   }
   // Polls the host's own memory until the device has written all of the answer there.
@@ -251,6 +257,7 @@ class PairsOnDevice : public DevicePairs {
   Stream stream_;
   // Of single poses.
   std::unique_ptr<PairRooms> single_room_;
+  DeviceArray<PairCounts> shared_;
   MappedArray<PairWords> answer_{1};
   unsigned sequence_ = 0;
   // Of batches.

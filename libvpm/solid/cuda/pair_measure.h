@@ -5,6 +5,7 @@
 #include <cuda_runtime.h>
 
 #include "libvpm/device/cuda/runtime.h"
+#include "libvpm/device/cuda/team.h"
 #include "libvpm/solid/crossed_triangle.h"
 #include "libvpm/solid/device_pairs.h"
 
@@ -38,11 +39,18 @@ struct NodePair {
   std::uint32_t a, b, children;
 };
 
+// How much of a pose has been found. 0 between poses, if several blocks share it.
+struct PairCounts {
+  unsigned segments, crossed[2], undecided, lacks_room;
+  unsigned come;  // blocks that have walked
+};
+
 // What the threads of a block share, at the beginning of its dynamic memory.
 struct PairState {
   Pose to_other[2];         // from a surface's own frame to the other's
   FloatPose from_other[2];  // back, for bounds
-  unsigned pushed[2], listed, segments, crossed[2], asked, undecided, lacks_room;
+  unsigned pushed[2], listed, asked;
+  PairCounts counts;
 };
 
 // Sizes of the lists in a block's shared memory. They grow with the block, whose steps take more.
@@ -82,13 +90,31 @@ class PairMeasure {
     tile_ = reinterpret_cast<double*>(at) + threadIdx.x / 32 * Lists::kTile;
     listed_ = reinterpret_cast<uint2*>(at + Lists::kStackBytes);
     marks_ = reinterpret_cast<unsigned*>(listed_ + Lists::kListed);
+    found_ = &state_.counts;
   }
 
   // Measures at a pose, which maps the second's frame to the first's. Returns the sum of PairAnswer
   // whose number this thread has; other threads' values are void.
   __device__ double run(const Pose& pose, bool& has_room, unsigned& undecided) {
     start(pose);
-    walk();
+    walk({});
+    return finish(has_room, undecided);
+  }
+  // Does a block's part of the walk of a pose. True for the block that comes last: it finishes.
+  __device__ bool run_part(const Pose& pose, PairCounts& shared, const BlockRange& part) {
+    start(pose);
+    found_ = &shared;
+    walk(part);
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      atomicAdd(&shared.undecided, state_.counts.undecided);
+      atomicOr(&shared.lacks_room, state_.counts.lacks_room);
+    }
+    if (!is_last_of(shared.come, part.parts)) return false;
+    if (threadIdx.x == 0) state_.counts = shared, shared = {};
+    return true;
+  }
+  __device__ double finish(bool& has_room, unsigned& undecided) {
     __syncthreads();
     mark_crossed();
     __syncthreads();
@@ -98,7 +124,7 @@ class PairMeasure {
     __syncthreads();
     const double sum = add_up();
     forget();
-    has_room = state_.lacks_room == 0, undecided = state_.undecided;
+    has_room = state_.counts.lacks_room == 0, undecided = state_.counts.undecided;
     return sum;
   }
 
@@ -137,8 +163,8 @@ class PairMeasure {
       for (unsigned role = 0; role < 2; ++role)
         state_.from_other[role] = FloatPose(state_.to_other[1 - role]);
       state_.pushed[0] = 1, state_.pushed[1] = 0;
-      state_.listed = state_.segments = state_.crossed[0] = state_.crossed[1] = 0;
-      state_.asked = state_.undecided = state_.lacks_room = 0;
+      state_.listed = state_.asked = 0;
+      state_.counts = {};
       stack_[0] = {0, 0, 0xffff};
     }
     const unsigned words = Lists::words_of(surface(0)) + Lists::words_of(surface(1));
@@ -163,20 +189,27 @@ class PairMeasure {
   // Walks both trees down together from the roots: takes the newest pairs of nodes, sixteen lanes
   // for each, puts the pairs of their children that may meet on the stack, and lists those of
   // triangles, which are met whenever the list is nearly full.
-  __device__ void walk() {
+  // Blocks that share a pose walk down alike until there is enough for all, and then each goes on
+  // with its own.
+  __device__ void walk(const BlockRange& part) {
     const unsigned lane = threadIdx.x % Lists::kLanes, group = threadIdx.x / Lists::kLanes;
     unsigned stacked = 0;
+    bool is_shared = part.parts > 1;
     for (unsigned turn = 0;; turn ^= 1) {
       stacked += state_.pushed[turn];
+      if (is_shared && stacked >= Lists::kGroups) {
+        stacked = keep_own(stacked, part);
+        is_shared = false;
+      }
       const unsigned listed = state_.listed;
-      const bool lacks_room = state_.lacks_room != 0;
+      const bool lacks_room = state_.counts.lacks_room != 0;
       const unsigned taken = min(stacked, Lists::kGroups);
       NodePair nodes{0, 0, 0};
       if (group < taken) nodes = stack_[stacked - 1 - group];
       __syncthreads();
       if (threadIdx.x == 0) state_.pushed[turn] = 0;
       if (taken == 0 || lacks_room || listed > Lists::kListed - kThreads) {
-        meet_listed(listed);
+        if (!is_shared || part.part == 0) meet_listed(listed);
         __syncthreads();
         if (threadIdx.x == 0) state_.listed = 0;
         if (taken == 0 || lacks_room) return;
@@ -186,6 +219,24 @@ class PairMeasure {
       open(nodes, lane, stacked, state_.pushed[turn ^ 1]);
       __syncthreads();
     }
+  }
+  // Drops from the stack what other blocks have too and will take, and what is listed from all but
+  // the first block. Blocks have opened the same nodes up to here, in whatever order.
+  __device__ unsigned keep_own(unsigned stacked, const BlockRange& part) {
+    static_assert(Lists::kGroups * Lists::kLanes <= kThreads);  // so that each has a thread
+    NodePair nodes{0, 0, 0};
+    if (threadIdx.x < stacked) nodes = stack_[threadIdx.x];
+    const unsigned hash = (nodes.a * 0x9e3779b1U ^ nodes.b * 0x85ebca6bU) + nodes.children;
+    const bool is_own = threadIdx.x < stacked && (hash >> 15) % part.parts == part.part;
+    __syncthreads();
+    if (threadIdx.x == 0 && part.part != 0) state_.listed = 0;
+    const unsigned place = place_in(state_.asked, is_own);
+    if (is_own) stack_[place] = nodes;
+    __syncthreads();
+    const unsigned kept = state_.asked;
+    __syncthreads();
+    if (threadIdx.x == 0) state_.asked = 0;
+    return kept;
   }
 
   // Tests the children of two nodes, a pair in each lane. A node more than twice as large as the
@@ -231,7 +282,7 @@ class PairMeasure {
     if (place < Lists::kStack)
       stack_[place] = nodes;
     else
-      state_.lacks_room = 1;
+      state_.counts.lacks_room = 1;
   }
 
   __device__ PlacedTriangle placed(unsigned role, std::uint32_t triangle) const {
@@ -256,14 +307,14 @@ class PairMeasure {
     TriangleCrossing crossing;
     const Meeting meeting =
         cross_triangles(a, b, {tests.above_b, tests.above_a, signs.above, signs.below}, crossing);
-    if (meeting == Meeting::undecided) atomicAdd(&state_.undecided, 1U);
+    if (meeting == Meeting::undecided) atomicAdd(&state_.counts.undecided, 1U);
     if (meeting == Meeting::crossing) add_segment(first, second, crossing);
   }
   __device__ void add_segment(std::uint32_t first, std::uint32_t second,
                               const TriangleCrossing& crossing) {
-    const unsigned place = atomicAdd(&state_.segments, 1U);
+    const unsigned place = atomicAdd(&found_->segments, 1U);
     if (place >= room_.capacity) {
-      state_.lacks_room = 1;
+      state_.counts.lacks_room = 1;
       return;
     }
     SharedSegment& segment = room_.segments[place];
@@ -280,7 +331,7 @@ class PairMeasure {
       const std::uint32_t triangle = role == 0 ? first : second;
       segment.next[role] = atomicExch(&last_segment(role, triangle), place + 1);
       if (segment.next[role] == 0)
-        room_.crossed[role][atomicAdd(&state_.crossed[role], 1U)] = triangle;
+        room_.crossed[role][atomicAdd(&found_->crossed[role], 1U)] = triangle;
     }
   }
   // Returns the sign of an edge's crossing where a segment starts: it does where an edge of the
@@ -298,10 +349,12 @@ class PairMeasure {
 
   // --- Crossed triangles ---
 
-  __device__ unsigned crossed_count() const { return state_.crossed[0] + state_.crossed[1]; }
-  __device__ unsigned role_of(unsigned k) const { return k < state_.crossed[0] ? 0 : 1; }
+  __device__ unsigned crossed_count() const {
+    return state_.counts.crossed[0] + state_.counts.crossed[1];
+  }
+  __device__ unsigned role_of(unsigned k) const { return k < state_.counts.crossed[0] ? 0 : 1; }
   __device__ std::uint32_t crossed(unsigned role, unsigned k) const {
-    return room_.crossed[role][k - (role == 0 ? 0 : state_.crossed[0])];
+    return room_.crossed[role][k - (role == 0 ? 0 : state_.counts.crossed[0])];
   }
 
   // Takes the sides of vertices from the crossings of their edges, and marks the nodes above.
@@ -318,7 +371,7 @@ class PairMeasure {
       const Triangle corners = surface(role).triangles[triangle];
       for (unsigned edge = 0; edge < 3; ++edge) {
         if (entries[edge] == 0) continue;
-        if (abs(entries[edge]) > 1) atomicAdd(&state_.undecided, 1U);
+        if (abs(entries[edge]) > 1) atomicAdd(&state_.counts.undecided, 1U);
         const std::uint32_t from = corners[edge], to = corners[(edge + 1) % 3];
         set_mark(role, inside, entries[edge] < 0 ? from : to);
         set_mark(role, outside, entries[edge] < 0 ? to : from);
@@ -334,7 +387,7 @@ class PairMeasure {
     for (unsigned role = 0; role < 2; ++role)
       for (unsigned k = threadIdx.x; k < Lists::words(surface(role).vertex_count); k += kThreads)
         if ((marks(role, inside)[k] & marks(role, outside)[k]) != 0)
-          atomicAdd(&state_.undecided, 1U);
+          atomicAdd(&state_.counts.undecided, 1U);
   }
 
   __device__ bool is_known(unsigned role, std::uint32_t vertex) const {
@@ -350,7 +403,7 @@ class PairMeasure {
     if (place < kMostAsked)
       asked()[place] = vertex | (role == 0 ? 0 : kSecond);
     else
-      state_.lacks_room = 1;
+      state_.counts.lacks_room = 1;
   }
   // Marks the sides of the listed vertices: eight lanes share the triangles of a column.
   __device__ void answer() {
@@ -427,7 +480,7 @@ class PairMeasure {
     for (unsigned turn = 0;; turn ^= 1) {
       stacked += state_.pushed[turn];
       const unsigned found = state_.listed, taken = min(stacked, kThreads / 4);
-      const bool lacks_room = state_.lacks_room != 0, opens = threadIdx.x / 4 < taken;
+      const bool lacks_room = state_.counts.lacks_room != 0, opens = threadIdx.x / 4 < taken;
       const std::uint32_t node = opens ? nodes[stacked - 1 - threadIdx.x / 4] : 0;
       __syncthreads();
       if (threadIdx.x == 0) state_.pushed[turn] = 0;
@@ -445,7 +498,7 @@ class PairMeasure {
       child |= node & kSecond;
       const unsigned at = stacked + place_in(state_.pushed[turn ^ 1], kind == Kind::node);
       if (kind == Kind::node && at < kHalf) nodes[at] = child;
-      if (kind == Kind::node && at >= kHalf) state_.lacks_room = 1;
+      if (kind == Kind::node && at >= kHalf) state_.counts.lacks_room = 1;
       const unsigned place = place_in(state_.listed, kind == Kind::piece);
       if (kind == Kind::piece) pieces[place] = child;
       __syncthreads();
@@ -548,6 +601,7 @@ class PairMeasure {
   const PairView& pair_;
   const PairRoom& room_;
   PairState& state_;
+  PairCounts* found_;  // of this block, or of all that share the pose
   NodePair* stack_;
   double* tile_;  // of the warp, in the place of the stack
   uint2* listed_;
