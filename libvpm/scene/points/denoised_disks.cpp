@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -32,6 +33,10 @@ constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 constexpr double kUnlikeOfSmooth = 0.1;
 constexpr double kUnlikeOfCalm = 0.02;  // in a calm leaf: noise alone turns so few elsewhere
 
+// Factor by which windows of cells are wider than those of disks: weights that fall to 0 at their
+// rim leave as much noise so.
+constexpr double kWiderByCells = 1.155;
+
 bool is_among_its_like(const Neighborhood& around) {
   return around.unlike <= kUnlikeOfSmooth * around.alike;
 }
@@ -52,26 +57,38 @@ class Smoothing {
       : windows_(windows),
         result_(result),
         kinds_(windows.count()),
-        is_calm_(leaf_count()),
-        is_beside_(leaf_count()) {}
+        cells_(windows.leaf_count()),
+        is_even_(windows.leaf_count()),
+        is_calm_(windows.leaf_count()),
+        is_beside_(windows.leaf_count()) {}
 
   // Runs the passes and returns the kinds of the disks. The work for a disk writes that disk alone
   // and reads of others only what the pass does not write, so that the order of threads does not
   // matter.
   std::vector<DiskKind> run() {
-    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_alike(leaf, work); });
+    pass([&](const DiskLeaf& leaf, LeafWork&) { set_cell(leaf); });
+    pass([&](const DiskLeaf& leaf, LeafWork&) { find_even(leaf); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) {
+      if (is_even_about(leaf))
+        denoise_among_cells(leaf, work);
+      else
+        denoise_among_alike(leaf, work);
+    });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_beside_creases(leaf, work); });
-    before_.reserve(windows_.count());
-    for (std::uint32_t i = 0; i < windows_.count(); ++i) before_.push_back(denoised(i));
-    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_denoised(leaf, work); });
+    feet_before_ = result_.feet;
+    normals_before_ = result_.normals;
+    pass([&](const DiskLeaf& leaf, LeafWork&) { set_cell(leaf); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) {
+      if (is_even_about(leaf))
+        denoise_among_cells(leaf, work);
+      else
+        denoise_among_denoised(leaf, work);
+    });
     return std::move(kinds_);
   }
 
  private:
-  std::uint32_t leaf_count() const {
-    return (windows_.count() + PointTree::kLeafSize - 1) / PointTree::kLeafSize;
-  }
   template <class Pass>
   void pass(const Pass& pass) {
     for_leaves(windows_, result_, pass);
@@ -88,30 +105,98 @@ class Smoothing {
     result_.normals[i] = narrow(normalized_or_zero(around.normals));
   }
 
-  // Calls take(i, disk, neighborhood) for the disks of a leaf, each given by disk_of(i). `near`
-  // holds the disks in all their windows.
-  template <class DiskOf, class Take>
-  void look_around_each(const DiskLeaf& leaf, std::span<const Disk> near, const DiskOf& disk_of,
-                        const Take& take) const {
-    for (std::uint32_t first = leaf.begin; first < leaf.end; first += 4) {
+  // Calls take(i, disk, neighborhood) for the disks of a leaf that wants(i) is true for, each given
+  // by disk_of(i). `near` holds the disks in all their windows.
+  template <class Wants, class DiskOf, class Take>
+  void look_around_each(const DiskLeaf& leaf, std::span<const Disk> near, const Wants& wants,
+                        const DiskOf& disk_of, const Take& take) const {
+    std::uint32_t wanted[PointTree::kLeafSize], size = 0;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      if (wants(i)) wanted[size++] = i;
+    }
+    for (std::uint32_t first = 0; first < size; first += 4) {
       DiskInBall four[4];
       Neighborhood found[4];
       for (std::uint32_t k = 0; k < 4; ++k) {
-        const std::uint32_t i = std::min(first + k, leaf.end - 1);
+        const std::uint32_t i = wanted[std::min(first + k, size - 1)];
         four[k] = {disk_of(i), windows_.window(i, leaf)};
       }
       look_around(near, four, found);
-      for (std::uint32_t k = 0; k < 4 && first + k < leaf.end; ++k)
-        take(first + k, four[k], found[k]);
+      for (std::uint32_t k = 0; k < 4 && first + k < size; ++k)
+        take(wanted[first + k], four[k], found[k]);
     }
+  }
+  bool has_smooth(const DiskLeaf& leaf) const {
+    return std::any_of(kinds_.begin() + leaf.begin, kinds_.begin() + leaf.end, is_smooth);
+  }
+
+  // Makes the cell of a leaf from its disks that are alike, as they are now.
+  void set_cell(const DiskLeaf& leaf) {
+    Vec3 normals;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) normals += denoised(i).normal;
+    const Vec3 axis = normalized_or_zero(normals);
+    PlaneSum sum;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      if (dot(denoised(i).normal, axis) >= kAlike) sum.add(denoised(i), {});
+    }
+    DiskCell& cell = cells_[leaf.begin / PointTree::kLeafSize];
+    cell = {{}, sum.count, leaf.end - leaf.begin - sum.count};
+    if (sum.count == 0) return;
+    cell.disk = {1.0 / sum.count * sum.place, normalized_or_zero(sum.normal)};
+    double height = 0;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      if (dot(denoised(i).normal, axis) >= kAlike) height += circle_height(cell.disk, denoised(i));
+    }
+    cell.disk.place += height / sum.count * cell.disk.normal;
+  }
+
+  // Marks a leaf if its disks are alike, and so are nearly all near it.
+  void find_even(const DiskLeaf& leaf) {
+    const std::uint32_t own = leaf.begin / PointTree::kLeafSize;
+    if (cells_[own].unlike > 0) return;
+    std::uint32_t alike = 0, unlike = 0;
+    windows_.for_leaves_about(leaf, [&](std::uint32_t k) {
+      const DiskCell& cell = cells_[k];
+      const bool faces_alike = dot(cell.disk.normal, cells_[own].disk.normal) >= kAlike;
+      alike += faces_alike ? cell.alike : 0;
+      unlike += cell.unlike + (faces_alike ? 0 : cell.alike);
+      return true;
+    });
+    is_even_[own] = alike >= kFewAlike && unlike <= kUnlikeOfCalm * alike;
+  }
+  bool is_even_about(const DiskLeaf& leaf) const {
+    return windows_.for_leaves_about(leaf, [&](std::uint32_t k) { return is_even_[k] != 0; });
+  }
+
+  // Moves the disks of a leaf to the means of cells, where all about it are even.
+  void denoise_among_cells(const DiskLeaf& leaf, LeafWork& work) {
+    work.cells.clear();
+    windows_.for_leaves_about(leaf, [&](std::uint32_t k) {
+      work.cells.push_back(cells_[k]);
+      return true;
+    });
+    for (std::uint32_t first = leaf.begin; first < leaf.end; first += 4) {
+      DiskInBall four[4];
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = std::min(first + k, leaf.end - 1);
+        four[k] = {denoised(i), kWiderByCells * windows_.window(i, leaf)};
+      }
+      move_to_cells(work.cells, four);
+      for (std::uint32_t k = 0; k < 4 && first + k < leaf.end; ++k) {
+        result_.feet[first + k] = narrow(four[k].disk.place);
+        result_.normals[first + k] = narrow(normalized_or_zero(four[k].disk.normal));
+        kinds_[first + k] = DiskKind::clear;
+      }
+    }
+    is_calm_[leaf.begin / PointTree::kLeafSize] = 1;
   }
 
   void denoise_among_alike(const DiskLeaf& leaf, LeafWork& work) {
-    if (!windows_.gather(leaf.center, windows_.reach(leaf), kMostInWide, work.near))
-      work.near.clear();
+    if (!windows_.gather_about(leaf, kMostInWide, work.near)) work.near.clear();
     bool is_calm = true;
     look_around_each(
-        leaf, work.near, [&](std::uint32_t i) { return windows_.disk(i); },
+        leaf, work.near, [](std::uint32_t) { return true; },
+        [&](std::uint32_t i) { return windows_.disk(i); },
         [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
           const bool is_usual = around.count() <= kMostInWindow && around.alike >= kFewAlike;
           const auto all = is_usual ? around : look_further(i, own);
@@ -147,9 +232,7 @@ class Smoothing {
 
   // True if hardly any disks about a leaf face elsewhere.
   bool is_calm_about(const DiskLeaf& leaf) const {
-    return windows_.for_leaves_near(leaf.center, windows_.reach(leaf), [&](std::uint32_t begin) {
-      return is_calm_[begin / PointTree::kLeafSize] != 0;
-    });
+    return windows_.for_leaves_about(leaf, [&](std::uint32_t k) { return is_calm_[k] != 0; });
   }
 
   // Marks clear disks by the mean normal about them. Their own normals would not do: disks that
@@ -162,44 +245,45 @@ class Smoothing {
       return;
     }
     is_beside_[leaf.begin / PointTree::kLeafSize] = 1;
-    if (!windows_.gather(leaf.center, windows_.reach(leaf), kMostInWide, work.near)) return;
+    if (!has_smooth(leaf) || !windows_.gather_about(leaf, kMostInWide, work.near)) return;
     look_around_each(
-        leaf, work.near, [&](std::uint32_t i) { return turned(i); },
+        leaf, work.near, [&](std::uint32_t i) { return is_smooth(kinds_[i]); },
+        [&](std::uint32_t i) { return turned(i); },
         [&](std::uint32_t i, const DiskInBall&, const Neighborhood& around) {
-          if (kinds_[i] == DiskKind::smooth && is_among_its_like(around))
-            kinds_[i] = DiskKind::clear;
+          if (is_among_its_like(around)) kinds_[i] = DiskKind::clear;
         });
   }
 
   // Denoises disks beside creases by clear ones only, since other windows may cross the crease.
   void denoise_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
-    if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0) return;
+    if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0 || !has_smooth(leaf)) return;
     work.near.clear();
     const auto take_clear = [&](std::uint32_t j) {
       if (kinds_[j] == DiskKind::clear) work.near.push_back(windows_.disk(j));
     };
-    if (!windows_.for_disks_near(leaf.center, windows_.reach(leaf), kMostInWide, take_clear))
-      return;
+    if (!windows_.for_disks_about(leaf, kMostInWide, take_clear)) return;
     look_around_each(
-        leaf, work.near, [&](std::uint32_t i) { return turned(i); },
+        leaf, work.near, [&](std::uint32_t i) { return is_smooth(kinds_[i]); },
+        [&](std::uint32_t i) { return turned(i); },
         [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
-          if (is_smooth(kinds_[i]) && around.alike >= kFewAlike) set(i, own.disk, around);
+          if (around.alike >= kFewAlike) set(i, own.disk, around);
         });
   }
 
   // Averages the means again, to even out noise on the scale of the windows, whose most displaced
   // disks would be the nearest. Opposite sides are found here, where both are denoised.
   void denoise_among_denoised(const DiskLeaf& leaf, LeafWork& work) {
+    if (!has_smooth(leaf)) return;
     work.near.clear();
     const auto take_smooth = [&](std::uint32_t j) {
-      if (is_smooth(kinds_[j])) work.near.push_back(before_[j]);
+      if (is_smooth(kinds_[j]))
+        work.near.push_back({widen(feet_before_[j]), widen(normals_before_[j])});
     };
-    if (!windows_.for_disks_near(leaf.center, windows_.reach(leaf), kMostInWide, take_smooth))
-      return;
+    if (!windows_.for_disks_about(leaf, kMostInWide, take_smooth)) return;
     look_around_each(
-        leaf, work.near, [&](std::uint32_t i) { return denoised(i); },
+        leaf, work.near, [&](std::uint32_t i) { return is_smooth(kinds_[i]); },
+        [&](std::uint32_t i) { return denoised(i); },
         [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
-          if (!is_smooth(kinds_[i])) return;
           if (around.alike >= kFewAlike) set(i, own.disk, around);
           if (around.opposite.count < kFewOpposite) return;
           const MeanPlane opposite(around.opposite, own.disk.place);
@@ -211,15 +295,33 @@ class Smoothing {
   const DiskWindows& windows_;
   DenoisedDisks& result_;
   std::vector<DiskKind> kinds_;
-  // Per leaf: hardly any disks about its disks face elsewhere; a leaf near it is not calm.
-  std::vector<char> is_calm_, is_beside_;
-  std::vector<Disk> before_;  // the disks before the last pass
+  std::vector<DiskCell> cells_;  // per leaf
+  // Per leaf: its disks and nearly all about them are alike; hardly any disks about its disks face
+  // elsewhere; a leaf near it is not calm.
+  std::vector<char> is_even_, is_calm_, is_beside_;
+  std::vector<Vec3f> feet_before_, normals_before_;  // the disks before the last pass
 };
 
 constexpr double kOnePlane = 2;  // radii: largest distance of a plane's disks from it
-constexpr double kApart = 2;    // radii: least distance of one side's middle from the other's plane
-constexpr double kFurther = 2;  // factor by which windows grow that hold no smooth disk
-constexpr double kExplained = 0.85;  // part of the points about a crease that must lie on it
+constexpr double kApart = 2;  // radii: least distance of one side's middle from the other's plane
+constexpr std::size_t kMostCells = 4096;  // about a leaf; more are of disks far too wide
+constexpr double kFurther = 2;            // factor by which windows grow that hold no smooth disk
+constexpr double kExplained = 0.85;       // part of the points about a crease that must lie on it
+
+// Describes smooth disks of a leaf that are alike to its first one: their mean, and their sum about
+// their mean place.
+struct SmoothCell {
+  Disk disk;
+  PlaneSum sum;
+
+  SmoothCell() = default;
+  explicit SmoothCell(const PlaneSum& about_origin)
+      : disk{1.0 / about_origin.count * about_origin.place,
+             normalized_or_zero(about_origin.normal)},
+        sum(about_origin) {
+    sum.height += dot(sum.normal, disk.place);
+  }
+};
 
 // Denoises disks whose normals were estimated across a crease. Disks on no pair of planes that
 // smooth disks show stay as they are, since they may be small and no crease.
@@ -227,62 +329,84 @@ class CreaseDenoising {
  public:
   CreaseDenoising(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
                   DenoisedDisks& result)
-      : windows_(windows), kinds_(kinds), result_(result) {
+      : windows_(windows), kinds_(kinds), result_(result), cells_(windows.leaf_count()) {
     smooth_.reserve(kinds.size());
     for (const DiskKind kind : kinds) smooth_.push_back(is_smooth(kind) ? 1.0F : 0.0F);
     nodes_with_smooth_ = largest_in_nodes(smooth_);
+    for_leaves(windows, result, [&](const DiskLeaf& leaf, LeafWork&) { set_cell(leaf); });
   }
 
   // Reads denoised smooth disks, and writes only others.
   void run() {
+    if (std::ranges::none_of(kinds_, is_smooth)) return;
     for_leaves(windows_, result_, [&](const DiskLeaf& leaf, LeafWork& work) {
-      std::vector<SmoothDisk> disks;
+      bool is_bent = false;
       for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-        if (is_smooth(kinds_[i])) continue;
+        is_bent |= kinds_[i] == DiskKind::bent;
+        if (kinds_[i] != DiskKind::stray && kinds_[i] != DiskKind::outlier) continue;
         const std::uint32_t nearest = windows_.nearest_marked(
             windows_.disk(i).place, {smooth_.data(), nodes_with_smooth_.data()});
-        if (nearest == kNoPoint) return;
-        if (kinds_[i] == DiskKind::stray ||
-            (kinds_[i] == DiskKind::outlier && is_near(nearest, i))) {
-          join(nearest, i);
-        } else if (kinds_[i] == DiskKind::bent && is_within_reach(nearest, i)) {
-          gather_smooth_about(i, disks);
-          if (!disks.empty()) denoise_at_crease(i, disks, work);
-        }
+        if (kinds_[i] == DiskKind::stray || is_near(nearest, i)) join(nearest, i);
       }
+      if (is_bent) denoise_at_crease(leaf, work);
     });
   }
 
  private:
-  // Describes a smooth disk near a place.
-  struct SmoothDisk {
-    std::uint32_t index;
-    Disk disk;
-    double height;  // height of the place above the disk's plane, m
+  // Describes a cell near a place.
+  struct NearCell {
+    const SmoothCell* cell;
+    double height;  // height of the place above the cell's plane, m
   };
 
-  void denoise_at_crease(std::uint32_t i, const std::vector<SmoothDisk>& disks, LeafWork& work) {
+  void set_cell(const DiskLeaf& leaf) {
+    PlaneSum sum;
+    Vec3 first;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      if (!is_smooth(kinds_[i])) continue;
+      const Disk disk{widen(result_.feet[i]), widen(result_.normals[i])};
+      if (sum.count == 0) first = disk.normal;
+      if (dot(disk.normal, first) >= kAlike) sum.add(disk, {});
+    }
+    if (sum.count > 0) cells_[leaf.begin / PointTree::kLeafSize] = SmoothCell(sum);
+  }
+
+  void denoise_at_crease(const DiskLeaf& leaf, LeafWork& work) const {
+    double widest = 0;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
+      widest = std::max(widest, windows_.wide_window(i, leaf));
+    const std::vector<const SmoothCell*> about =
+        cells_about(leaf.center, 0.5 * leaf.diagonal + kFurther * widest);
+    if (about.empty()) return;
+    std::vector<NearCell> near;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      if (kinds_[i] != DiskKind::bent) continue;
+      const double reach = windows_.wide_window(i, leaf);
+      take_near(windows_.disk(i).place, reach, about, near);
+      if (near.empty()) take_near(windows_.disk(i).place, kFurther * reach, about, near);
+      if (!near.empty()) denoise_at_crease(i, leaf, near, work);
+    }
+  }
+  void denoise_at_crease(std::uint32_t i, const DiskLeaf& leaf, const std::vector<NearCell>& cells,
+                         LeafWork& work) const {
     const Vec3 place = windows_.disk(i).place;
-    const SmoothDisk* const own = best_of(disks, nullptr);
-    const SmoothDisk* const other = best_of(disks, own);
+    const NearCell* const own = best_of(cells, nullptr);
+    const NearCell* const other = best_of(cells, own);
     if (other == nullptr || std::fabs(own->height) > kWindow * windows_.radius(i)) return;
     const double tolerance = kOnePlane * windows_.radius(i);
-    const MeanPlane first = mean_about(own->disk, disks, place, tolerance);
-    const auto second =
-        second_plane({first.place, first.normal}, mean_about(other->disk, disks, place, tolerance),
-                     kApart * windows_.radius(i));
-    if (!second || !explains(first, *second, i)) return;
-    set(i, first);
+    const MeanPlane first = mean_about(own->cell->disk, cells, place, tolerance);
+    const auto second = second_plane({first.place, first.normal},
+                                     mean_about(other->cell->disk, cells, place, tolerance),
+                                     kApart * windows_.radius(i));
+    if (!second || !explains(first, *second, i, leaf)) return;
+    result_.feet[i] = narrow(first.foot);
+    result_.normals[i] = narrow(first.normal);
     work.found.push_back({i, *second});
-  }
-  void set(std::uint32_t i, const MeanPlane& plane) {
-    result_.feet[i] = narrow(plane.foot);
-    result_.normals[i] = narrow(plane.normal);
   }
 
   // Makes an outlier a copy of the nearest smooth disk. Its own plane would continue a wall into
   // nothing.
-  void join(std::uint32_t nearest, std::uint32_t i) {
+  void join(std::uint32_t nearest, std::uint32_t i) const {
     result_.feet[i] = result_.feet[nearest];
     result_.normals[i] = result_.normals[nearest];
     result_.second_of[i] = result_.second_of[nearest];
@@ -295,72 +419,70 @@ class CreaseDenoising {
     return squared_norm(away) <= reach * reach;
   }
 
-  // Gathers the smooth disks in a ball. Returns false if they are more than `most`.
-  bool gather_smooth(Vec3 center, double reach, std::uint32_t most,
-                     std::vector<SmoothDisk>& disks) const {
-    disks.clear();
-    return windows_.for_disks_near(center, reach, most, [&](std::uint32_t j) {
-      if (!is_smooth(kinds_[j])) return;
-      const Disk denoised{widen(result_.feet[j]), widen(result_.normals[j])};
-      disks.push_back({j, denoised, dot(denoised.normal, center - denoised.place)});
-    });
+  // Returns the cells of leaves in a ball; none if they are more than kMostCells.
+  std::vector<const SmoothCell*> cells_about(Vec3 center, double reach) const {
+    std::vector<const SmoothCell*> cells;
+    const bool all = windows_.disks().feet.for_leaves_in_ball<PointTree::OneByOne>(
+        center, reach * reach, [&](std::uint32_t node) { return nodes_with_smooth_[node] > 0; },
+        [&](std::uint32_t begin, std::uint32_t) {
+          const SmoothCell& cell = cells_[begin / PointTree::kLeafSize];
+          if (cell.sum.count > 0) cells.push_back(&cell);
+          return cells.size() <= kMostCells;
+        });
+    if (!all) cells.clear();
+    return cells;
+  }
+  // Fills `near` with the cells in a ball.
+  static void take_near(Vec3 center, double reach, const std::vector<const SmoothCell*>& cells,
+                        std::vector<NearCell>& near) {
+    near.clear();
+    for (const SmoothCell* cell : cells) {
+      const Vec3 away = center - cell->disk.place;
+      if (squared_norm(away) <= reach * reach) near.push_back({cell, dot(cell->disk.normal, away)});
+    }
   }
 
-  // False if gather_smooth_about() surely finds none, so that its search can be skipped.
-  bool is_within_reach(std::uint32_t nearest, std::uint32_t i) const {
-    const double reach = kFurther * windows_.wide_window(i);
-    return squared_norm(windows_.disk(nearest).place - windows_.disk(i).place) <= reach * reach;
-  }
-  void gather_smooth_about(std::uint32_t i, std::vector<SmoothDisk>& disks) const {
-    const Vec3 place = windows_.disk(i).place;
-    double reach = windows_.wide_window(i);
-    DiskWindows::halve_until(reach,
-                             [&](double r) { return gather_smooth(place, r, kMostInWide, disks); });
-    if (disks.empty()) gather_smooth(place, kFurther * reach, 4 * kMostInWide, disks);
-  }
-
-  // Returns the disk on whose plane the place lies best; with `other`, among those that face
-  // elsewhere.
-  static const SmoothDisk* best_of(const std::vector<SmoothDisk>& disks, const SmoothDisk* other) {
-    const SmoothDisk* best = nullptr;
-    for (const SmoothDisk& d : disks) {
+  // Returns the cell on whose plane the place lies best; with `other`, among those that face
+  // elsewhere. The first of equal ones.
+  static const NearCell* best_of(const std::vector<NearCell>& cells, const NearCell* other) {
+    const NearCell* best = nullptr;
+    for (const NearCell& c : cells) {
       if (other != nullptr) {
-        const double cosine = dot(d.disk.normal, other->disk.normal);
+        const double cosine = dot(c.cell->disk.normal, other->cell->disk.normal);
         if (cosine >= kAlike || cosine <= kOpposite) continue;
       }
-      const double off = std::fabs(d.height);
-      if (best == nullptr || off < std::fabs(best->height) ||
-          (off == std::fabs(best->height) && d.index < best->index))
-        best = &d;
+      if (best == nullptr || std::fabs(c.height) < std::fabs(best->height)) best = &c;
     }
     return best;
   }
-  // Returns the mean of the disks on the same plane as one of them.
-  static MeanPlane mean_about(const Disk& one, const std::vector<SmoothDisk>& disks, Vec3 place,
+  // Returns the mean of the cells on the same plane as one of them.
+  static MeanPlane mean_about(const Disk& one, const std::vector<NearCell>& cells, Vec3 place,
                               double tolerance) {
     PlaneSum sum;
-    for (const SmoothDisk& d : disks) {
-      if (dot(d.disk.normal, one.normal) >= kAlike &&
-          std::fabs(dot(one.normal, d.disk.place - one.place)) <= tolerance)
-        sum.add(d.disk, place);
+    for (const NearCell& c : cells) {
+      const Disk& disk = c.cell->disk;
+      if (dot(disk.normal, one.normal) >= kAlike &&
+          std::fabs(dot(one.normal, disk.place - one.place)) <= tolerance)
+        sum.add(c.cell->sum, place - disk.place);
     }
     return {sum, place};
   }
 
   // True if most points about a disk lie on the surface that two planes enclose.
-  bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i) const {
+  bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i,
+                const DiskLeaf& leaf) const {
     const Vec3 normal = widen(second.normal), foot = widen(second.foot);
     const double near = kOnePlane * windows_.radius(i);
     std::uint32_t on = 0, all = 0;
-    const auto count = [&](std::uint32_t j) {
-      const Disk other = windows_.disk(j);
-      const double a = dot(first.normal, other.place - first.foot),
-                   b = dot(normal, other.place - foot);
+    const Vec3 place = windows_.disk(i).place;
+    const double reach = windows_.window(i, leaf);
+    windows_.for_disks_about(leaf, kMostInWide, [&](std::uint32_t j) {
+      const Vec3 other = windows_.disk(j).place;
+      if (squared_norm(other - place) > reach * reach) return;
+      const double a = dot(first.normal, other - first.foot), b = dot(normal, other - foot);
       ++all;
       on += std::fabs(second.is_convex ? std::max(a, b) : std::min(a, b)) <= near;
-    };
-    windows_.for_disks_near(windows_.disk(i).place, windows_.window(i, windows_.leaf_of(i)),
-                            kMostInWide, count);
+    });
     return on >= kExplained * all;
   }
 
@@ -368,25 +490,25 @@ class CreaseDenoising {
   const std::vector<DiskKind>& kinds_;
   DenoisedDisks& result_;
   std::vector<float> smooth_, nodes_with_smooth_;  // PointNumbers: 1 for smooth disks, 0 for others
+  std::vector<SmoothCell> cells_;                  // per leaf
 };
 
 }  // namespace
 
-DenoisedDisks as_measured(const DiskSurface& measured, std::vector<float> radii) {
-  const std::uint32_t count = measured.feet.count;
-  return {{measured.feet.points, measured.feet.points + count},
-          {measured.normals, measured.normals + count},
+DenoisedDisks as_measured(const DiskWindows& measured) {
+  const auto& [feet, normals, radii] = measured.disks();
+  const std::uint32_t count = measured.count();
+  return {{feet.points, feet.points + count},
+          {normals, normals + count},
           std::vector<std::uint32_t>(count, kNoPoint),
-          std::move(radii),
+          radii,
           {}};
 }
 
-DenoisedDisks denoised(const DiskSurface& measured, std::vector<float> radii) {
-  const std::vector<float> as_given = radii;
-  DenoisedDisks result = as_measured(measured, std::move(radii));
-  const DiskWindows windows(measured, as_given);
-  const std::vector<DiskKind> kinds = Smoothing(windows, result).run();
-  CreaseDenoising(windows, kinds, result).run();
+DenoisedDisks denoised(const DiskWindows& measured) {
+  DenoisedDisks result = as_measured(measured);
+  const std::vector<DiskKind> kinds = Smoothing(measured, result).run();
+  CreaseDenoising(measured, kinds, result).run();
   return result;
 }
 

@@ -425,11 +425,11 @@ struct DenoisedDisks {
   std::vector<SecondPlane> seconds;
 };
 
-// Returns the denoised disks of `measured`, which holds the points as measured, in a tree; `radii`
-// are their sampling radii, m. The result does not depend on the number of threads.
-DenoisedDisks denoised(const DiskSurface& measured, std::vector<float> radii);
+class DiskWindows;
 
-// Returns the measured points themselves as disks.
-DenoisedDisks as_measured(const DiskSurface& measured, std::vector<float> radii);
+// Return the denoised disks, and the measured points themselves as disks. The result does not
+// depend on the number of threads.
+DenoisedDisks denoised(const DiskWindows& measured);
+DenoisedDisks as_measured(const DiskWindows& measured);
 
 }  // namespace vpm

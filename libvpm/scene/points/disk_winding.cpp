@@ -1,9 +1,13 @@
 #include "libvpm/scene/points/disk_winding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/vec3x4.h"
+#include "libvpm/scene/points/disk_windows.h"
 
 namespace vpm {
 namespace {
@@ -34,45 +38,44 @@ void for_leaves(std::uint32_t count, const Visit& visit) {
   });
 }
 
-struct NearDisk {
-  Vec3 place, normal;
-};
-
-// Returns the area of a disk, m^2. Near disks have weights that fall to 0 at the reach, so that it
-// hardly matters which of a lattice's points are just within it.
-double area_of(const NearDisk& disk, double reach, std::span<const NearDisk> near) {
-  double weights = 0;
-  for (const NearDisk& other : near) {
-    const double weight = 1 - squared_norm(other.place - disk.place) / (reach * reach);
-    weights += weight > 0 && dot(other.normal, disk.normal) > kOtherSide ? weight : 0;
+// Returns the areas of four disks, m^2, which count their neighbours within `reach`, m. Near disks
+// have weights that fall to 0 there, so that it hardly matters which of a lattice's points are just
+// within it.
+VPM_VECTOR_CLONES
+std::array<double, 4> areas_of(const DiskInBall (&four)[4], std::span<const Disk> near) {
+  const auto& [a, b, c, d] = four;
+  const Vec3x4 place(a.disk.place, b.disk.place, c.disk.place, d.disk.place),
+      normal(a.disk.normal, b.disk.normal, c.disk.normal, d.disk.normal);
+  const Double4 reach{a.reach, b.reach, c.reach, d.reach}, squared_reach = reach * reach, zero{};
+  Double4 weights{};
+  for (const Disk& other : near) {
+    const Vec3 p = other.place;
+    const Double4 weight = 1 - squared_norm(Vec3x4(p, p, p, p) - place) / squared_reach;
+    weights += (weight > 0) & (dot(other.normal, normal) > kOtherSide) ? weight : zero;
   }
-  return 0.5 * kPi * reach * reach / weights;
+  const Double4 areas = 0.5 * kPi * reach * reach / weights;
+  return {areas[0], areas[1], areas[2], areas[3]};
 }
 
 // Sets the areas of the disks of a leaf.
-void measure_leaf(const PointTree& tree, std::span<const Vec3f> normals,
-                  std::span<const float> radii, std::uint32_t begin, std::uint32_t end,
+void measure_leaf(const DiskWindows& windows, const DiskLeaf& leaf, std::vector<Disk>& near,
                   std::vector<WindingDisk>& disks) {
-  const PointBox box = tree.leaf_of(begin);
-  const double diagonal = norm(widen(box.high) - widen(box.low));
   const auto reach_of = [&](std::uint32_t i) {
-    const double reach = kReach * radii[i], most = kReachInLeaves * diagonal;
-    return most > 0 ? std::min(reach, most) : reach;
+    return DiskWindows::at_most(kReach * windows.radius(i), kReachInLeaves * leaf.diagonal);
   };
-  double widest = 0;
-  for (std::uint32_t i = begin; i < end; ++i) widest = std::max(widest, reach_of(i));
-  thread_local std::vector<NearDisk> near;
-  near.clear();
-  const double all = widest + 0.5 * diagonal;
-  tree.for_points_in_ball(0.5 * (widen(box.low) + widen(box.high)), all * all,
-                          [&](std::uint32_t j) {
-                            near.push_back({widen(tree.points[j]), widen(normals[j])});
-                            return true;
-                          });
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const NearDisk disk{widen(tree.points[i]), widen(normals[i])};
-    const double reach = reach_of(i), area = reach > 0 ? area_of(disk, reach, near) : 0;
-    disks[i] = {tree.points[i], static_cast<float>(area / kPi), narrow(area * disk.normal)};
+  windows.gather_about(leaf, windows.count(), near);
+  for (std::uint32_t first = leaf.begin; first < leaf.end; first += 4) {
+    DiskInBall four[4];
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const std::uint32_t i = std::min(first + k, leaf.end - 1);
+      four[k] = {windows.disk(i), reach_of(i)};
+    }
+    const std::array<double, 4> areas = areas_of(four, near);
+    for (std::uint32_t k = 0; k < 4 && first + k < leaf.end; ++k) {
+      const double area = four[k].reach > 0 ? areas[k] : 0;
+      disks[first + k] = {narrow(four[k].disk.place), static_cast<float>(area / kPi),
+                          narrow(area * four[k].disk.normal)};
+    }
   }
 }
 
@@ -115,26 +118,35 @@ WindingNode node_of(const DiskGroup& group, const PointBox& box) {
 }
 
 std::vector<WindingNode> nodes_of(const PointTree& tree, const std::vector<WindingDisk>& disks) {
-  std::vector<DiskGroup> groups(2 * std::size_t{tree.leaves});
-  for (std::uint32_t i = 0; i < tree.count; ++i)
-    groups[tree.leaves + i / PointTree::kLeafSize].add(group_of(disks[i]));
-  for (std::uint32_t node = tree.leaves; node-- > 1;) {
-    groups[node] = groups[2 * node];
-    groups[node].add(groups[2 * node + 1]);
-  }
   std::vector<WindingNode> nodes(tree.nodes());
-  for (std::uint32_t node = 1; node < groups.size(); ++node)
-    nodes[node] = node_of(groups[node], tree.box_of(node));
+  std::vector<DiskGroup> groups((disks.size() + PointTree::kLeafSize - 1) / PointTree::kLeafSize);
+  for_leaves(tree.count, [&](std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t leaf = begin / PointTree::kLeafSize;
+    for (std::uint32_t i = begin; i < end; ++i) groups[leaf].add(group_of(disks[i]));
+    nodes[tree.leaves + leaf] = node_of(groups[leaf], tree.box_of(tree.leaves + leaf));
+  });
+  // Joins the groups of a level to those of the level above, whose first node is `first`.
+  for (std::uint32_t first = tree.leaves / 2; first > 0; first /= 2) {
+    groups.resize((groups.size() + 1) / 2 * 2);
+    for (std::uint32_t k = 0; k < groups.size() / 2; ++k) {
+      DiskGroup both = groups[2 * k];
+      both.add(groups[2 * k + 1]);
+      nodes[first + k] = node_of(both, tree.box_of(first + k));
+      groups[k] = both;
+    }
+    groups.resize(groups.size() / 2);
+  }
   return nodes;
 }
 
 }  // namespace
 
-DiskDipoles::DiskDipoles(const PointTree& tree, std::span<const Vec3f> normals,
-                         std::span<const float> radii)
-    : disks_(tree.count), count_(tree.count), leaves_(tree.leaves) {
-  for_leaves(tree.count, [&](std::uint32_t begin, std::uint32_t end) {
-    measure_leaf(tree, normals, radii, begin, end, disks_);
+DiskDipoles::DiskDipoles(const DiskWindows& windows)
+    : disks_(windows.count()), count_(windows.count()), leaves_(windows.disks().feet.leaves) {
+  const PointTree& tree = windows.disks().feet;
+  for_leaves(tree.count, [&](std::uint32_t begin, std::uint32_t) {
+    thread_local std::vector<Disk> near;
+    measure_leaf(windows, windows.leaf_of(begin), near, disks_);
   });
   nodes_ = nodes_of(tree, disks_);
   find_sides(tree);
@@ -144,15 +156,21 @@ void DiskDipoles::find_sides(const PointTree& tree) {
   // On the surface of one solid the mean of both sides is 1/2, on an inner face 3/2, and before a
   // wide wall, of which one side was seen, 0.
   constexpr double kInner = 1, kMaybeInner = 0.75, kMayEnclose = 0.25;
+  constexpr std::uint32_t kLeavesAsked = 4;  // one of so many neighbours tells for all
   const DiskWinding winding = this->winding();
   const auto leaf_of = [](std::uint32_t i) { return i / PointTree::kLeafSize; };
   std::vector<char> is_inner(count_);
   std::vector<double> of_leaf(leaf_of(count_ + PointTree::kLeafSize - 1));
   for_leaves(count_, [&](std::uint32_t begin, std::uint32_t) {
-    of_leaf[leaf_of(begin)] = winding.at(widen(nodes_[leaves_ + leaf_of(begin)].center));
+    if (leaf_of(begin) % kLeavesAsked != 0) return;
+    const double number = winding.at(widen(nodes_[leaves_ + leaf_of(begin)].center));
+    for (std::uint32_t k = leaf_of(begin); k < of_leaf.size() && k < leaf_of(begin) + kLeavesAsked;
+         ++k)
+      of_leaf[k] = number;
   });
   // Where a face becomes an inner one, at another surface, leaves hold points of both sides.
   const auto is_near_inner = [&](std::uint32_t begin) {
+    if (of_leaf[leaf_of(begin)] <= kMaybeInner) return false;
     const PointBox box = tree.leaf_of(begin);
     const Vec3 low = widen(box.low), high = widen(box.high);
     return !tree.for_leaves_in_ball(

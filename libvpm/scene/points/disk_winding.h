@@ -90,13 +90,14 @@ struct DiskWinding {
   }
 };
 
+class DiskWindows;
+
 // Holds the dipoles of a cloud. Immutable.
 class DiskDipoles {
  public:
   DiskDipoles() = default;
-  // Estimates the area of each disk from how many there are about it. `tree` holds the places in
-  // order_by_leaves(), `normals` are of unit length, `radii` are sampling radii, m.
-  DiskDipoles(const PointTree& tree, std::span<const Vec3f> normals, std::span<const float> radii);
+  // Estimates the area of each disk from how many there are about it.
+  explicit DiskDipoles(const DiskWindows& windows);
 
   DiskWinding winding() const {
     return {disks_.data(), nodes_.data(), count_, leaves_, may_enclose_};

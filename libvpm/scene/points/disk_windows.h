@@ -20,6 +20,19 @@ struct Disk {
   Vec3 place, normal;  // centre, about the cloud's origin, m; unit vector into free space
 };
 
+// Returns the height at which the circle, or line, that is normal to two disks and leads through
+// the middle of the second meets the axis of the first, m.
+inline double circle_height(const Disk& one, const Disk& other) {
+  return dot(one.normal + other.normal, other.place - one.place) /
+         (1 + dot(one.normal, other.normal));
+}
+
+// Mean of alike disks of a leaf, with their number and that of others.
+struct DiskCell {
+  Disk disk;
+  std::uint32_t alike = 0, unlike = 0;
+};
+
 // Limits of the cosine between the normals of two disks.
 inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
 inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
@@ -38,6 +51,13 @@ struct PlaneSum {
     place += disk.place;
     height += dot(disk.normal, above - disk.place);
     ++count;
+  }
+  // Adds another sum, whose heights are those of a place that is `away` from the one of this sum.
+  void add(const PlaneSum& other, Vec3 away) {
+    normal += other.normal;
+    place += other.place;
+    height += other.height + dot(other.normal, away);
+    count += other.count;
   }
 };
 
@@ -62,6 +82,10 @@ struct DiskInBall {
 void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
                  Neighborhood (&found)[4]);
 
+// Moves four disks along their normals to the mean height of cells that face their way, with
+// weights that fall to 0 at the balls' rims, and gives them the sum of their normals.
+void move_to_cells(std::span<const DiskCell> near, DiskInBall (&disks)[4]);
+
 // Radii of windows, in sampling radii: kWindow is a little wider than the 7 x 7 pixels by which
 // normals are estimated, kWide reaches beyond windows that hold both sides of a crease.
 inline constexpr double kWindow = 6.3, kWide = 14;
@@ -80,17 +104,27 @@ struct DiskLeaf {
   double diagonal = 0;
 };
 
-// Refers to the measured disks. Thread-safe.
+// Holds the sampling radii of disks, m, and refers to these.
+struct MeasuredDisks {
+  PointTree feet;
+  const Vec3f* normals = nullptr;
+  std::vector<float> radii;
+};
+
+// Lists for each leaf of measured disks those near it, once for all that asks. Thread-safe.
 class DiskWindows {
  public:
-  DiskWindows(const DiskSurface& measured, std::span<const float> radii)
-      : measured_(measured), radii_(radii) {}
+  explicit DiskWindows(MeasuredDisks measured);
 
+  const MeasuredDisks& disks() const { return measured_; }
   std::uint32_t count() const { return measured_.feet.count; }
+  std::uint32_t leaf_count() const {
+    return (count() + PointTree::kLeafSize - 1) / PointTree::kLeafSize;
+  }
   Disk disk(std::uint32_t i) const {
     return {widen(measured_.feet.points[i]), widen(measured_.normals[i])};
   }
-  double radius(std::uint32_t i) const { return radii_[i]; }
+  double radius(std::uint32_t i) const { return measured_.radii[i]; }
 
   DiskLeaf leaf_of(std::uint32_t i) const {
     const PointBox box = measured_.feet.leaf_of(i);
@@ -100,10 +134,14 @@ class DiskWindows {
   }
   // Returns the radius of a disk's window, m; that of wide_window() reaches beyond a crease.
   double window(std::uint32_t i, const DiskLeaf& leaf) const {
-    return std::min(kWindow * radii_[i], kLeavesInWindow * leaf.diagonal);
+    return at_most(kWindow * measured_.radii[i], kLeavesInWindow * leaf.diagonal);
   }
-  double wide_window(std::uint32_t i) const {
-    return std::min(kWide * radii_[i], kLeavesInWide * leaf_of(i).diagonal);
+  double wide_window(std::uint32_t i, const DiskLeaf& leaf) const {
+    return at_most(kWide * measured_.radii[i], kLeavesInWide * leaf.diagonal);
+  }
+  // Limits a radius; leaves of which all disks are at one place have no limit.
+  static double at_most(double radius, double limit) {
+    return limit > 0 ? std::min(radius, limit) : radius;
   }
   // Returns the radius about a leaf's centre that holds the windows of all its disks, m.
   double reach(const DiskLeaf& leaf) const {
@@ -122,11 +160,28 @@ class DiskWindows {
       return ++count <= most;
     });
   }
-  // Calls visit(first disk) for each leaf that a ball touches, until it returns false.
+  // Calls visit(leaf) for each leaf that the ball about one with its disks' windows touches, until
+  // it returns false. Returns the last value.
   template <class Visit>
-  bool for_leaves_near(Vec3 center, double reach, const Visit& visit) const {
+  bool for_leaves_about(const DiskLeaf& leaf, const Visit& visit) const {
+    const std::span<const std::uint32_t> listed = near_leaves(leaf);
+    if (!listed.empty()) return std::ranges::all_of(listed, visit);
+    const double reach = this->reach(leaf);
     return measured_.feet.for_leaves_in_ball(
-        center, reach * reach, [&](std::uint32_t begin, std::uint32_t) { return visit(begin); });
+        leaf.center, reach * reach,
+        [&](std::uint32_t begin, std::uint32_t) { return visit(begin / PointTree::kLeafSize); });
+  }
+  // Calls visit(j) for the disks in that ball. Stops and returns false after more than `most`.
+  template <class Visit>
+  bool for_disks_about(const DiskLeaf& leaf, std::uint32_t most, const Visit& visit) const {
+    const double reach = this->reach(leaf);
+    const std::span<const std::uint32_t> leaves = near_leaves(leaf);
+    if (leaves.empty()) return for_disks_near(leaf.center, reach, most, visit);
+    std::uint32_t listed[kMostNear * PointTree::kLeafSize];
+    const std::uint32_t size =
+        measured_.feet.list_points(leaves, leaf.center, reach * reach, listed);
+    for (std::uint32_t k = 0; k < size; ++k) visit(listed[k]);
+    return true;
   }
   // Returns the disk nearest to x with a mark above 0, or kNoPoint.
   std::uint32_t nearest_marked(Vec3 x, const PointNumbers& marks) const {
@@ -138,6 +193,10 @@ class DiskWindows {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
   }
+  bool gather_about(const DiskLeaf& leaf, std::uint32_t most, std::vector<Disk>& disks) const {
+    disks.clear();
+    return for_disks_about(leaf, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
+  }
   // Calls gathers(reach), and halves `reach`, m, as long as it returns false, kHalvings times at
   // most. Returns the last answer.
   template <class Gathers>
@@ -148,8 +207,31 @@ class DiskWindows {
   }
 
  private:
-  const DiskSurface& measured_;
-  std::span<const float> radii_;
+  // Leaves whose lists are made by one search, and kept together; more are not listed for a leaf.
+  static constexpr std::uint32_t kLeavesOfBlock = 8, kLeavesOfRun = 128, kMostNear = 64;
+  static constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+
+  // Lists the leaves near those of a run; none where they are more than kMostNear.
+  struct NearLeaves {
+    struct Range {
+      std::uint32_t begin, size;
+    };
+    std::vector<std::uint32_t> leaves;
+    Range ranges[kLeavesOfRun];
+  };
+
+  // Lists the leaves near those of a block; `quads` is a buffer.
+  void list_near(std::uint32_t first, std::uint32_t end, std::vector<std::uint32_t>& quads,
+                 NearLeaves& near) const;
+  std::span<const std::uint32_t> near_leaves(const DiskLeaf& leaf) const {
+    const std::uint32_t k = leaf.begin / PointTree::kLeafSize;
+    const NearLeaves& near = near_[k / kLeavesOfRun];
+    const auto [begin, size] = near.ranges[k % kLeavesOfRun];
+    return std::span(near.leaves).subspan(begin, size);
+  }
+
+  MeasuredDisks measured_;
+  std::vector<NearLeaves> near_;
 };
 
 // Holds the mean of several disks: the plane with their mean normal at their mean height, through
@@ -182,14 +264,15 @@ inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlan
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
 }
 
-// Holds what a thread that goes over leaves writes: a buffer of disks near the leaf, and the second
-// planes that it found.
+// Holds what a thread that goes over leaves writes: buffers of disks and cells near the leaf, and
+// the second planes that it found.
 struct LeafWork {
   struct Found {
     std::uint32_t disk;
     SecondPlane second;
   };
   std::vector<Disk> near;
+  std::vector<DiskCell> cells;
   std::vector<Found> found;
 };
 

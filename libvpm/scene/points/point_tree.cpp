@@ -142,6 +142,20 @@ void PointTree::search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest&
   search<ByVectors>(x, touching, best);
 }
 
+std::uint32_t PointTree::list_in_leaf(std::uint32_t begin, std::uint32_t end, Vec3 center,
+                                      double squared_radius, std::uint32_t* listed) const {
+  std::uint32_t size = 0;
+  for (std::uint32_t first = begin; first < end; first += 4) {
+    double squared[4];
+    ByVectors::to_points(points + first, end - first, center, squared);
+    for (std::uint32_t k = 0; k < 4 && first + k < end; ++k) {
+      listed[size] = first + k;
+      size += squared[k] <= squared_radius ? 1 : 0;
+    }
+  }
+  return size;
+}
+
 VPM_VECTOR_CLONES
 std::uint32_t PointTree::list_by_vectors(Vec3 center, double squared_radius,
                                          std::uint32_t (&listed)[kMostListed]) const {
@@ -149,17 +163,47 @@ std::uint32_t PointTree::list_by_vectors(Vec3 center, double squared_radius,
   const bool all = for_leaves_in_ball<ByVectors>(
       center, squared_radius, EachNode{}, [&](std::uint32_t begin, std::uint32_t end) {
         if (size + kLeafSize > kMostListed) return false;
-        for (std::uint32_t first = begin; first < end; first += 4) {
-          double squared[4];
-          ByVectors::to_points(points + first, end - first, center, squared);
-          for (std::uint32_t k = 0; k < 4 && first + k < end; ++k) {
-            listed[size] = first + k;
-            size += squared[k] <= squared_radius ? 1 : 0;
-          }
-        }
+        size += list_in_leaf(begin, end, center, squared_radius, listed + size);
         return true;
       });
   return all ? size : kMostListed + 1;
+}
+
+VPM_VECTOR_CLONES
+void PointTree::list_quads(Vec3 center, double squared_radius,
+                           std::vector<std::uint32_t>& quads) const {
+  quads.clear();
+  for_leaves_in_ball<ByVectors>(center, squared_radius, EachNode{},
+                                [&](std::uint32_t begin, std::uint32_t) {
+                                  const std::uint32_t quad = (leaves + begin / kLeafSize) / 4;
+                                  if (quads.empty() || quads.back() != quad) quads.push_back(quad);
+                                  return true;
+                                });
+}
+
+VPM_VECTOR_CLONES
+void PointTree::list_leaves(Vec3 center, double squared_radius,
+                            std::span<const std::uint32_t> quads,
+                            std::vector<std::uint32_t>& listed) const {
+  for (const std::uint32_t quad : quads) {
+    double squared[4];
+    ByVectors::to_boxes(boxes[quad], center, squared);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (squared[k] <= squared_radius && 4 * quad + k >= leaves)
+        listed.push_back(4 * quad + k - leaves);
+    }
+  }
+}
+
+VPM_VECTOR_CLONES
+std::uint32_t PointTree::list_points(std::span<const std::uint32_t> in_leaves, Vec3 center,
+                                     double squared_radius, std::uint32_t* listed) const {
+  std::uint32_t size = 0;
+  for (const std::uint32_t leaf : in_leaves) {
+    const std::uint32_t begin = leaf * kLeafSize;
+    size += list_in_leaf(begin, end_of_leaf(begin), center, squared_radius, listed + size);
+  }
+  return size;
 }
 
 std::uint32_t leaves_for(std::size_t points) {

@@ -251,6 +251,15 @@ struct PointTree {
     }
     return true;
   }
+  // Fill `quads` with the numbers of those quads that hold a leaf which a ball touches; append to
+  // `listed` the leaves that one touches, of those in quads; and list the points in one, of those
+  // in leaves, and return their number. All are in order. Host only.
+  void list_quads(Vec3 center, double squared_radius, std::vector<std::uint32_t>& quads) const;
+  void list_leaves(Vec3 center, double squared_radius, std::span<const std::uint32_t> quads,
+                   std::vector<std::uint32_t>& listed) const;
+  std::uint32_t list_points(std::span<const std::uint32_t> in_leaves, Vec3 center,
+                            double squared_radius, std::uint32_t* listed) const;
+
   // Calls visit(i) for the points in a ball, until it returns false. Returns the last value.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
@@ -375,6 +384,9 @@ struct PointTree {
   static constexpr std::uint32_t kMostListed = 512;
   std::uint32_t list_by_vectors(Vec3 center, double squared_radius,
                                 std::uint32_t (&listed)[kMostListed]) const;
+  // Lists the points [begin, end) of a leaf that are in a ball, in order. Returns their number.
+  std::uint32_t list_in_leaf(std::uint32_t begin, std::uint32_t end, Vec3 center,
+                             double squared_radius, std::uint32_t* listed) const;
 };
 
 // Returns the number of leaves for this many points; kMostLeaves can be searched.

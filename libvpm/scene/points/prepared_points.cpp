@@ -1,21 +1,20 @@
 #include "libvpm/scene/points/prepared_points.h"
 
 #include <algorithm>
+#include <bit>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace vpm {
 
 PreparedPoints::PreparedPoints(const Cloud& cloud, Denoising points) {
   check_for_queries(cloud);
   std::vector<std::uint32_t> order = order_in_space(cloud);
-  std::vector<float> radii = take(cloud, order);
-  if (leaves_out_inner(cloud, order)) radii = take(cloud, order);
-  const DiskSurface measured{point_tree(), normals().data()};
-  if (points == Denoising::on) {
-    disks_ = denoised(measured, std::move(radii));
-    foot_boxes_ = boxes_of(disks_.feet);
-  } else {
-    disks_ = as_measured(measured, std::move(radii));
-  }
+  DiskWindows windows = take(cloud, order);
+  if (leaves_out_inner(cloud, order)) windows = take(cloud, order);
+  disks_ = points == Denoising::on ? denoised(windows) : as_measured(windows);
+  if (points == Denoising::on) foot_boxes_ = boxes_of(disks_.feet);
   largest_radii_ = largest_in_nodes(disks_.radii);
   cones_ = cones_of(surface());
 }
@@ -31,39 +30,63 @@ bool PreparedPoints::leaves_out_inner(const Cloud& cloud, std::vector<std::uint3
   return true;
 }
 
+namespace {
+
+// Returns a number that orders like a coordinate; the same one for 0 and -0.
+std::uint32_t rank_of(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(positive_zero(x));
+  constexpr std::uint32_t kSign = std::uint32_t{1} << 31;
+  return (bits & kSign) != 0 ? ~bits : bits | kSign;
+}
+
+// Holds the rank of a point's x, and its index.
+struct RankedPoint {
+  std::uint32_t rank, index;
+};
+
+// Sorts by rank; equal ones keep their order.
+void sort_by_rank(std::vector<RankedPoint>& points) {
+  constexpr int kBits = 11;
+  constexpr std::uint32_t kDigits = 1U << kBits;
+  std::vector<RankedPoint> sorted(points.size());
+  for (int shift = 0; shift < 32; shift += kBits) {
+    std::uint32_t next[kDigits] = {};
+    for (const RankedPoint& p : points) ++next[p.rank >> shift & (kDigits - 1)];
+    std::exclusive_scan(std::begin(next), std::end(next), std::begin(next), 0U);
+    for (const RankedPoint& p : points) sorted[next[p.rank >> shift & (kDigits - 1)]++] = p;
+    points.swap(sorted);
+  }
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> PreparedPoints::order_in_space(const Cloud& cloud) {
-  struct Placed {  // side by side, for the cache
-    Vec3f at;
-    std::uint32_t index;
-  };
-  std::vector<Placed> placed;
-  placed.reserve(cloud.size());
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) placed.push_back({cloud.positions[i], i});
-  std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) {
-    if (a.at.x != b.at.x) return a.at.x < b.at.x;
-    if (a.at.y != b.at.y) return a.at.y < b.at.y;
-    if (a.at.z != b.at.z) return a.at.z < b.at.z;
-    return order_key(cloud, a.index) < order_key(cloud, b.index);
-  });
+  std::vector<RankedPoint> points(cloud.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) points[i] = {rank_of(cloud.positions[i].x), i};
+  sort_by_rank(points);
   std::vector<std::uint32_t> order;
-  order.reserve(placed.size());
-  for (const Placed& p : placed) {
-    if (order.empty() || order_key(cloud, p.index) != order_key(cloud, order.back()))
-      order.push_back(p.index);
+  order.reserve(points.size());
+  for (auto same = points.begin(); same != points.end();) {
+    auto end = std::next(same);
+    while (end != points.end() && end->rank == same->rank) ++end;
+    const auto key = [&](const RankedPoint& p) { return order_key(cloud, p.index); };
+    if (end - same > 1) std::sort(same, end, [&](auto& a, auto& b) { return key(a) < key(b); });
+    for (const auto begin = same; same != end; ++same) {
+      if (same == begin || key(*same) != key(*std::prev(same))) order.push_back(same->index);
+    }
   }
   order_by_leaves(cloud.positions, order);
   return order;
 }
 
-std::vector<float> PreparedPoints::take(const Cloud& cloud,
-                                        const std::vector<std::uint32_t>& order) {
+DiskWindows PreparedPoints::take(const Cloud& cloud, const std::vector<std::uint32_t>& order) {
   points_ = OrderedPoints(cloud, order);
-  std::vector<float> radii;
-  radii.reserve(order.size());
-  for (const std::uint32_t i : order) radii.push_back(cloud.radii[i]);
+  std::vector<float> radii(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) radii[k] = cloud.radii[order[k]];
   boxes_ = boxes_of(positions());
-  dipoles_ = DiskDipoles(point_tree(), normals(), radii);
-  return radii;
+  DiskWindows windows({point_tree(), normals().data(), std::move(radii)});
+  dipoles_ = DiskDipoles(windows);
+  return windows;
 }
 
 PointTree PreparedPoints::point_tree() const {

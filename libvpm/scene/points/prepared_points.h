@@ -8,6 +8,7 @@
 
 #include "libvpm/scene/cloud_order.h"
 #include "libvpm/scene/points/disk_surface.h"
+#include "libvpm/scene/points/disk_windows.h"
 
 namespace vpm {
 
@@ -48,10 +49,10 @@ class PreparedPoints {
 
  private:
   // Return indices of the cloud's points, each place and normal once, in the order of positions();
-  // and, having taken the points in such an order, their sampling radii.
+  // and, having taken the points in such an order, their windows.
   static std::vector<std::uint32_t> order_in_space(const Cloud& cloud);
   bool leaves_out_inner(const Cloud& cloud, std::vector<std::uint32_t>& order);
-  std::vector<float> take(const Cloud& cloud, const std::vector<std::uint32_t>& order);
+  DiskWindows take(const Cloud& cloud, const std::vector<std::uint32_t>& order);
 
   std::uint64_t serial_ = next_serial();
   OrderedPoints points_;
