@@ -69,6 +69,8 @@ Sphere ascend(const Space& space, Vec3 start, const SeparationBound& from, doubl
   Sphere best{start, from.value};
   if (from.nearest.kind == Obstacle::Kind::none) return best;
   Contacts contacts;
+  contacts.obstacles.reserve(kMaxObstacles + 1);
+  contacts.bounds.reserve(kMaxObstacles + 1);
   contacts.add(space, from.nearest, start);
   const double largest_box = std::min(kBox, longest_step / best.radius);
   double box = largest_box * best.radius;

@@ -60,10 +60,11 @@ class BlockTree {
     return entry == kNone ? kNone : entry - kBlock;
   }
 
-  // Calls take(block) for all blocks for which reaches(cube) holds, as for all cubes around them.
-  template <typename Reaches, typename Take>
-  void visit(const Reaches& reaches, const Take& take) const {
-    visit(nodes_[0][0], {}, reaches, take);
+  // Calls take(block) for all blocks whose cube, like those around it except the unit cube, has its
+  // centre nearer to x than reach(level).
+  template <typename Reach, typename Take>
+  void visit(Vec3 x, const Reach& reach, const Take& take) const {
+    visit(nodes_[0][0], {}, x, reach, take);
   }
 
   // Cuts a block into those of its eighths that `kept` names by bits. The first keeps its number,
@@ -109,16 +110,25 @@ class BlockTree {
     Cube cube;
   };
 
-  template <typename Reaches, typename Take>
-  void visit(std::uint32_t entry, const Cube& cube, const Reaches& reaches,
+  template <typename Reach, typename Take>
+  void visit(std::uint32_t entry, const Cube& cube, Vec3 x, const Reach& reach,
              const Take& take) const {
-    if (entry == kNone || !reaches(cube)) return;
+    if (entry == kNone) return;
     if (entry >= kBlock) {
       take(entry - kBlock);
       return;
     }
-    for (unsigned octant = 0; octant < 8; ++octant)
-      visit(nodes_[entry][octant], cube.part(octant), reaches, take);
+    // Squared distances of the eighths' centres from x along each axis, lower half first.
+    const Vec3 from = cube.center() - x;
+    const double quarter = edge_of_level(cube.level + 2), near = reach(cube.level + 1);
+    const auto halves = [&](double v) {
+      return std::array{(v - quarter) * (v - quarter), (v + quarter) * (v + quarter)};
+    };
+    const std::array<double, 2> x2 = halves(from.x), y2 = halves(from.y), z2 = halves(from.z);
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (x2[octant & 1] + y2[(octant >> 1) & 1] + z2[octant >> 2] < near * near)
+        visit(nodes_[entry][octant], cube.part(octant), x, reach, take);
+    }
   }
 
   std::vector<Node> nodes_;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/model/sphere.h"
 #include "libvpm/packing/ascent.h"
@@ -15,7 +17,7 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 4;
+constexpr std::size_t kBlocksPerTask = 4, kSpheresPerTask = 16;
 // Number of new spheres that a block is searched for at a time. A block is at most four radii wide,
 // so that more would mostly overlap.
 constexpr std::size_t kAllOfBlock = std::numeric_limits<std::size_t>::max(), kFewOfBlock = 2;
@@ -32,6 +34,38 @@ constexpr double kContact = 1e-6;  // gap that counts as contact, in radii
 constexpr double kNearer = 0.9;    // a step that leaves more than this part of the gap is given up
 constexpr int kMaxSteps = 30;
 
+// Lists for each sphere those before it, by index, that it overlaps. The largest must be first.
+std::vector<std::vector<std::uint32_t>> overlapped_before(const std::vector<Sphere>& spheres) {
+  struct Sorted {
+    double at;  // coordinate of the centre along the sweep
+    std::uint32_t index;
+  };
+  Box box;
+  for (const Sphere& s : spheres) box.add(s.center);
+  const int axis = box.longest_axis();
+  std::vector<Sorted> order;
+  for (const Sphere& s : spheres)
+    order.push_back({coordinate(s.center, axis), static_cast<std::uint32_t>(order.size())});
+  std::sort(order.begin(), order.end(), [](const Sorted& a, const Sorted& b) {
+    return a.at != b.at ? a.at < b.at : a.index < b.index;
+  });
+  std::vector<std::vector<std::uint32_t>> overlapped(spheres.size());
+  parallel_for(order.size(), kSpheresPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::uint32_t i = order[p].index;
+      const double reach = spheres[i].radius + spheres.front().radius;
+      const auto take = [&](std::uint32_t j) {
+        const double distance = norm(spheres[i].center - spheres[j].center);
+        if (j < i && distance - spheres[j].radius < spheres[i].radius) overlapped[i].push_back(j);
+      };
+      for (std::size_t q = p; q-- > 0 && order[p].at - order[q].at <= reach;) take(order[q].index);
+      for (std::size_t q = p + 1; q < order.size() && order[q].at - order[p].at <= reach; ++q)
+        take(order[q].index);
+    }
+  });
+  return overlapped;
+}
+
 // Spheres of one band of radii that were found and may be placed.
 class Candidates {
  public:
@@ -46,13 +80,13 @@ class Candidates {
   bool empty() const { return candidates_.empty(); }
 
   // Places all candidates, largest first, until there are `most` spheres; drops those whose room is
-  // taken by then. Appends the blocks around them to `touched`.
-  void place_all(std::size_t most, std::vector<std::uint32_t>& touched);
+  // taken by then. Returns the blocks around them, ascending.
+  std::vector<std::uint32_t> place_all(std::size_t most);
 
   // Places the candidate with the smallest gap to a sphere, and moves it into contact if that costs
   // no more than the width of the band. In a tube the largest sphere fits anywhere, and the room
-  // between two that do not touch would hold no third.
-  void place_closest(std::vector<std::uint32_t>& touched);
+  // between two that do not touch would hold no third. Returns the blocks around it, ascending.
+  std::vector<std::uint32_t> place_closest();
 
  private:
   struct Candidate {
@@ -64,7 +98,7 @@ class Candidates {
 
   void update_gap(Candidate& candidate) const;
   Sphere moved_to_contact(const Candidate& candidate) const;
-  bool place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
+  std::vector<Sphere> fitting(const std::vector<Sphere>& spheres, std::size_t most) const;
 
   Space& space_;
   double radius_, cap_;
@@ -85,25 +119,27 @@ void Candidates::search(const std::vector<std::uint32_t>& blocks) {
   });
 }
 
-void Candidates::place_all(std::size_t most, std::vector<std::uint32_t>& touched) {
-  for (const Candidate& c : candidates_)
-    if (space_.spheres().size() < most) place(c.sphere, touched);
+std::vector<std::uint32_t> Candidates::place_all(std::size_t most) {
+  std::vector<Sphere> spheres;
+  for (const Candidate& c : candidates_) spheres.push_back(c.sphere);
   candidates_.clear();
+  return space_.place(fitting(spheres, most - space_.spheres().size()));
 }
 
-void Candidates::place_closest(std::vector<std::uint32_t>& touched) {
-  bool placed = false;
-  while (!placed && !candidates_.empty()) {
+std::vector<std::uint32_t> Candidates::place_closest() {
+  std::vector<Sphere> fits;
+  while (fits.empty() && !candidates_.empty()) {
     for (Candidate& c : candidates_) update_gap(c);
     std::erase_if(candidates_,
                   [](const auto& c) { return c.gap < (kUnchanged - 1) * c.sphere.radius; });
-    if (candidates_.empty()) return;
+    if (candidates_.empty()) break;
     const auto closest =
         std::min_element(candidates_.begin(), candidates_.end(),
                          [](const auto& a, const auto& b) { return a.gap < b.gap; });
-    placed = place(moved_to_contact(*closest), touched);
+    fits = fitting({moved_to_contact(*closest)}, 1);
     candidates_.erase(closest);
   }
+  return space_.place(fits);
 }
 
 void Candidates::update_gap(Candidate& c) const {
@@ -136,11 +172,33 @@ Sphere Candidates::moved_to_contact(const Candidate& c) const {
   return best;
 }
 
-bool Candidates::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
-  const double room = space_.separation(sphere.center).value;
-  if (!(room >= kUnchanged * sphere.radius)) return false;
-  space_.place({sphere.center, std::min(room, sphere.radius)}, touched);
-  return true;
+// Returns the first `most` of these spheres that fit, after each other, beside those placed so far,
+// each cut by what rounding took of its room. The largest must be first.
+std::vector<Sphere> Candidates::fitting(const std::vector<Sphere>& spheres,
+                                        std::size_t most) const {
+  std::vector<double> rooms(spheres.size());
+  parallel_for(spheres.size(), kSpheresPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) rooms[i] = space_.separation(spheres[i].center).value;
+  });
+  const auto fits = [](double room, const Sphere& s) { return room >= kUnchanged * s.radius; };
+  std::vector<Sphere> open;  // those that fit unless one before them takes their room
+  std::vector<double> open_rooms;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (!fits(rooms[i], spheres[i])) continue;
+    open.push_back(spheres[i]);
+    open_rooms.push_back(rooms[i]);
+  }
+  const std::vector<std::vector<std::uint32_t>> overlapped = overlapped_before(open);
+  std::vector<Sphere> fitting;
+  for (std::size_t i = 0; i < open.size() && fitting.size() < most; ++i) {
+    double room = open_rooms[i];
+    for (const std::uint32_t j : overlapped[i])  // of radius 0 if it does not fit itself
+      if (open[j].radius > 0)
+        room = std::min(room, norm(open[i].center - open[j].center) - open[j].radius);
+    open[i].radius = fits(room, open[i]) ? std::min(room, open[i].radius) : 0;
+    if (open[i].radius > 0) fitting.push_back(open[i]);
+  }
+  return fitting;
 }
 
 // Fills these blocks, and those around each sphere that is placed, until no candidate is left. The
@@ -150,13 +208,14 @@ void fill_blocks(Space& space, Candidates& candidates, std::vector<std::uint32_t
   while ((!blocks.empty() || !candidates.empty()) && space.spheres().size() < most) {
     candidates.search(blocks);
     if (space.spheres().size() < in_contact) {
-      blocks.clear();
-      candidates.place_closest(blocks);
+      blocks = candidates.place_closest();
     } else {
-      candidates.place_all(most, blocks);
+      const std::vector<std::uint32_t> searched = std::move(blocks);
+      const std::vector<std::uint32_t> touched = candidates.place_all(most);
+      blocks.clear();
+      std::set_union(searched.begin(), searched.end(), touched.begin(), touched.end(),
+                     std::back_inserter(blocks));
     }
-    std::sort(blocks.begin(), blocks.end());
-    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
     space.update(blocks);
     std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
   }

@@ -128,8 +128,9 @@ class Growth {
     const double least = kMoreRoom * spheres_[order.back()].radius;
     const std::size_t most = count + (count + 1) / 2;
     Space space(distance_, least, kRoomBlocks + kRoomBlocksPerSphere * count);
-    std::vector<std::uint32_t> touched;
-    for (const std::uint32_t i : order) space.place(spheres_[i], touched);
+    std::vector<Sphere> placed;
+    for (const std::uint32_t i : order) placed.push_back(spheres_[i]);
+    space.place(placed);
     space.update({0});
     for (double radius = std::min<double>(space.bound(), most_);
          space.spheres().size() < most && radius > least;) {

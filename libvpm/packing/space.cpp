@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -32,9 +31,15 @@ constexpr float kNearFace = 0.5f;
 // A sphere counts as nearest to a point if no triangle is nearer than its distance plus these
 // relative and absolute margins: a triangle that it touches may lie between.
 constexpr double kBehind = 1e-3, kTouching = 1e-9;
-constexpr std::size_t kBlocksPerTask = 64;
-// A block gives back memory when more than 1 / this of its cells' is unused.
-constexpr std::size_t kUnusedPart = 4;
+constexpr std::size_t kBlocksPerTask = 8, kSpheresPerTask = 8;
+// More than what rounding changes in distances within the unit cube, and less than any room.
+constexpr double kRounding = 1e-12;
+// Number of blocks that a task looks through, and of ranges of blocks that list new spheres.
+constexpr std::size_t kNumbersPerTask = 1 << 11, kRanges = 64;
+constexpr std::size_t kBlocksAround = 64;  // that list a sphere, mostly
+// A block gives back memory when more than 1 / kUnusedPart of its cells' is unused, and takes 1 /
+// kSparePart more than it needs.
+constexpr std::size_t kUnusedPart = 4, kSparePart = 8;
 
 // Returns half the diagonal of a cell, rounded up.
 float half_diagonal(int level) {
@@ -49,6 +54,35 @@ float round_up(double v) {
   return std::nextafter(static_cast<float>(v), HUGE_VALF);
 }
 
+// Returns the numbers of all lists, one list after the other.
+std::vector<std::uint32_t> joined(const std::vector<std::vector<std::uint32_t>>& lists) {
+  std::vector<std::uint32_t> all;
+  for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+// Returns those of so many numbers, in their order, for which `holds`; number(k) is the k-th.
+template <class Number, class Holds>
+std::vector<std::uint32_t> those_for_which(std::size_t count, const Number& number,
+                                           const Holds& holds) {
+  std::vector<std::vector<std::uint32_t>> found(count / kNumbersPerTask + 1);
+  parallel_for(found.size(), 1, [&](std::size_t task, std::size_t) {
+    const std::size_t end = std::min((task + 1) * kNumbersPerTask, count);
+    for (std::size_t k = task * kNumbersPerTask; k < end; ++k) {
+      const auto candidate = static_cast<std::uint32_t>(number(k));
+      if (holds(candidate)) found[task].push_back(candidate);
+    }
+  });
+  return joined(found);
+}
+
+// True if a sphere is for sure no nearer to a point than `distance`: most are told without a root.
+// `from` leads from the sphere's centre to the point.
+bool is_beyond(Vec3 from, double radius, double distance) {
+  const double reach = radius + distance + kRounding;
+  return squared_norm(from) > reach * reach;
+}
+
 // Returns the sphere of radius `cap` that touches the nearest obstacle of x.
 Sphere against_obstacle(Vec3 x, const SeparationBound& at, double cap) {
   return {x - (at.value - cap) * at.away, cap};
@@ -61,15 +95,27 @@ Space::Space(const SolidDistance& solid, double smallest, std::size_t most_block
   Cell root{};
   root.x = root.y = root.z = 0.5f;
   root.triangle = SurfacePoint::kNone;
-  blocks_.push_back({kRootListDistance, {}, 0, {}, {}});
+  blocks_.push_back({.list_distance = kRootListDistance});
   estimate(root, blocks_[0]);
   measure(root);
   blocks_[0].cells = {root};
   bounds_ = {root.bound};
 }
 
+Space::~Space() {
+  parallel_for(blocks_.size(), kNumbersPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) blocks_[b] = {};
+  });
+}
+
 float Space::bound() const {
-  return bounds_.empty() ? 0 : *std::max_element(bounds_.begin(), bounds_.end());
+  std::vector<float> largest(bounds_.size() / kNumbersPerTask + 1);
+  parallel_for(largest.size(), 1, [&](std::size_t task, std::size_t) {
+    const std::size_t end = std::min((task + 1) * kNumbersPerTask, bounds_.size());
+    for (std::size_t b = task * kNumbersPerTask; b < end; ++b)
+      largest[task] = std::max(largest[task], bounds_[b]);
+  });
+  return *std::max_element(largest.begin(), largest.end());
 }
 
 std::vector<std::uint32_t> Space::focus(double radius, std::size_t most) {
@@ -78,32 +124,32 @@ std::vector<std::uint32_t> Space::focus(double radius, std::size_t most) {
   for (;;) {
     std::vector<std::uint32_t> blocks = promising(radius);
     update(blocks);  // with the spheres placed while they rested
-    const auto drop_hopeless = [&] {
-      std::erase_if(blocks, [&](std::uint32_t b) { return !is_promising(b, radius); });
+    const auto those = [&](const auto& holds) {
+      return those_for_which(
+          blocks.size(), [&](std::size_t k) { return blocks[k]; }, holds);
     };
-    drop_hopeless();
+    const auto has_hope = [&](std::uint32_t b) { return is_promising(b, radius); };
+    blocks = those(has_hope);
     if (blocks.empty()) return blocks;
     for (;;) {
       keep_most_room(blocks, most);
-      const auto wide =
-          std::partition(blocks.begin(), blocks.end(), [&](std::uint32_t b) { return is_cut(b); });
-      if (wide == blocks.end()) break;
-      const std::vector<std::uint32_t> parts = split_blocks({wide, blocks.end()});
-      blocks.erase(wide, blocks.end());
+      const std::vector<std::uint32_t> wide = those([&](std::uint32_t b) { return !is_cut(b); });
+      if (wide.empty()) break;
+      blocks = those([&](std::uint32_t b) { return is_cut(b); });
+      const std::vector<std::uint32_t> parts = split_blocks(wide);
       blocks.insert(blocks.end(), parts.begin(), parts.end());
-      drop_hopeless();
+      blocks = those(has_hope);
     }
-    std::sort(blocks.begin(), blocks.end());
+    if (!std::is_sorted(blocks.begin(), blocks.end())) std::sort(blocks.begin(), blocks.end());
     if (!blocks.empty()) return blocks;
   }
 }
 
 // Returns the blocks, ascending, that may still hold a sphere of this radius.
 std::vector<std::uint32_t> Space::promising(double radius) const {
-  std::vector<std::uint32_t> blocks;
-  for (std::uint32_t b = 0; b < bounds_.size(); ++b)
-    if (is_promising(b, radius)) blocks.push_back(b);
-  return blocks;
+  return those_for_which(
+      bounds_.size(), [](std::size_t k) { return k; },
+      [&](std::uint32_t b) { return is_promising(b, radius); });
 }
 
 // Returns true if the block is small enough for searches.
@@ -142,7 +188,9 @@ void Space::estimate(Cell& cell, const Block& block) const {
   const Vec3 x = cell.center();
   double d = block.list_distance, bound = d + half_diagonal(cell.level);
   const auto take = [&](const Sphere& s) {
-    const double beside = norm(x - s.center) - s.radius;
+    const Vec3 from = x - s.center;
+    if (is_beyond(from, s.radius, d)) return;
+    const double beside = norm(from) - s.radius;
     if (beside >= d) return;
     d = beside;
     bound = farthest(cell, s);
@@ -204,6 +252,7 @@ double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
   const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
   bounds.clear();
   const auto add = [&](Vec3 from, double radius, bool flat) {
+    if (is_beyond(from, radius, horizon)) return;
     const double distance = norm(from);
     if (!(distance > 0) || distance - radius > horizon) return;
     const double curvature = flat ? 0 : 1 / distance;
@@ -292,26 +341,30 @@ void Space::split_cells(Block& block, int level, std::vector<Cell>& cells) const
   }
 }
 
-// Returns the eighths of a block, empty ones without cells, and takes its contents.
-std::array<Space::Block, 8> Space::split_block(std::uint32_t number) {
+// Returns the eighths of a block that have cells, and takes its contents.
+Space::Parts Space::split_block(std::uint32_t number) {
   Block& block = blocks_[number];
   const BlockTree::Cube cube = tree_[number];
   const Vec3 center = cube.center();
   const double list_distance = kListDistance * edge_of_level(cube.level + 1);
   const double near = list_distance + half_diagonal(cube.level + 1);
-  std::array<Block, 8> parts{};
   std::vector<Cell> cells;
   split_cells(block, cube.level, cells);
-  for (const Cell& cell : cells) {
-    parts[(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
-          (cell.z > center.z ? 4u : 0u)]
-        .cells.push_back(cell);
-  }
+  const auto octant_of = [&](const Cell& cell) {
+    return (cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
+           (cell.z > center.z ? 4u : 0u);
+  };
+  std::array<std::size_t, 8> counts{};
+  for (const Cell& cell : cells) ++counts[octant_of(cell)];
+  Parts parts;
   for (unsigned octant = 0; octant < 8; ++octant) {
-    Block& part = parts[octant];
-    if (part.cells.empty()) continue;
+    if (counts[octant] == 0) continue;
+    parts.kept |= 1u << octant;
+    Block& part = parts.blocks.emplace_back();
     part.list_distance = list_distance;
-    part.cells.shrink_to_fit();
+    part.cells.reserve(counts[octant]);
+    std::copy_if(cells.begin(), cells.end(), std::back_inserter(part.cells),
+                 [&](const Cell& cell) { return octant_of(cell) == octant; });
     const Vec3 at = cube.part(octant).center();
     for (const std::uint32_t i : block.spheres)
       if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
@@ -325,31 +378,32 @@ std::array<Space::Block, 8> Space::split_block(std::uint32_t number) {
 
 // Cuts blocks into eighths and returns these. Blocks without any room stay whole, without cells.
 std::vector<std::uint32_t> Space::split_blocks(const std::vector<std::uint32_t>& wide) {
-  std::vector<std::array<Block, 8>> parts(wide.size());
+  std::vector<Parts> parts(wide.size());
   parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) parts[i] = split_block(wide[i]);
   });
   std::vector<std::uint32_t> numbers;
+  std::vector<std::size_t> first;  // place in `numbers` of each block's first part
   for (std::size_t i = 0; i < wide.size(); ++i) {
     bounds_[wide[i]] = 0;
-    unsigned kept = 0;
-    for (unsigned octant = 0; octant < 8; ++octant)
-      kept |= parts[i][octant].cells.empty() ? 0 : 1u << octant;
-    if (kept == 0) continue;
-    std::uint32_t appended = tree_.size();
-    tree_.cut(wide[i], kept);
-    blocks_.resize(tree_.size());
-    bounds_.resize(tree_.size());
-    bool first = true;
-    for (Block& part : parts[i]) {
-      if (part.cells.empty()) continue;
-      const std::uint32_t b = first ? wide[i] : appended++;
-      blocks_[b] = std::move(part);
-      bounds_[b] = block_bound(blocks_[b]);
-      numbers.push_back(b);
-      first = false;
-    }
+    first.push_back(numbers.size());
+    if (parts[i].kept == 0) continue;
+    numbers.push_back(wide[i]);
+    const std::uint32_t appended = tree_.size();
+    tree_.cut(wide[i], parts[i].kept);
+    for (std::uint32_t b = appended; b < tree_.size(); ++b) numbers.push_back(b);
   }
+  blocks_.resize(tree_.size());
+  bounds_.resize(tree_.size());
+  parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t* b = numbers.data() + first[i];
+      for (Block& part : std::exchange(parts[i].blocks, {})) {
+        bounds_[*b] = block_bound(part);
+        blocks_[*b++] = std::move(part);
+      }
+    }
+  });
   return numbers;
 }
 
@@ -397,16 +451,15 @@ float Space::block_bound(const Block& block) {
   return bound;
 }
 
-// Takes the promising cells out of a block and cuts them down to leaves; moves all others to
+// Takes the promising cells out of a block and cuts them down to `leaves`; adds all others to
 // `rest`. Cells that are not promising stay where they are: a block is searched for one band of
 // radii after the other, and each time few of its cells are.
-void Space::refine(Block& block, double radius, double cap, std::vector<Cell>& leaves,
-                   std::vector<Cell>& rest) const {
+void Space::refine(Block& block, double radius, double cap, Scratch& scratch) const {
+  auto& [leaves, rest, pending, bounds] = scratch;
   const auto promising = std::partition(block.cells.begin(), block.cells.end(),
                                         [&](const Cell& cell) { return cell.bound < radius; });
-  std::vector<Cell> pending(promising, block.cells.end());
+  pending.assign(promising, block.cells.end());
   block.cells.erase(promising, block.cells.end());
-  std::vector<LinearBound> bounds;  // scratch
   while (!pending.empty()) {
     Cell cell = pending.back();
     pending.pop_back();
@@ -439,8 +492,10 @@ void Space::refine(Block& block, double radius, double cap, std::vector<Cell>& l
 void Space::search(std::uint32_t number, double radius, double cap, std::size_t most,
                    std::vector<Sphere>& found) {
   Block& block = blocks_[number];
-  std::vector<Cell> leaves, rest;
-  refine(block, radius, cap, leaves, rest);
+  static thread_local Scratch scratch;  // getting memory anew would take a tenth of all time
+  auto& [leaves, rest, pending, bounds] = scratch;
+  leaves.clear(), rest.clear();
+  refine(block, radius, cap, scratch);
   std::sort(leaves.begin(), leaves.end(), [](const Cell& a, const Cell& b) {
     if (a.d != b.d) return a.d > b.d;
     if (a.x != b.x) return a.x < b.x;
@@ -459,7 +514,7 @@ void Space::search(std::uint32_t number, double radius, double cap, std::size_t 
     }
   }
   const std::size_t count = block.cells.size() + leaves.size() + rest.size();
-  block.cells.reserve(count);
+  if (block.cells.capacity() < count) block.cells.reserve(count + count / kSparePart);
   block.cells.insert(block.cells.end(), leaves.begin(), leaves.end());
   block.cells.insert(block.cells.end(), rest.begin(), rest.end());
   if (block.cells.capacity() > count + count / kUnusedPart) block.cells.shrink_to_fit();
@@ -493,7 +548,9 @@ SeparationBound Space::separation(Vec3 x, double within) const {
   if (b == BlockTree::kNone) return {-1, {}, {}};
   SeparationBound best{std::min(within, blocks_[b].list_distance), {}, {}};
   for (const std::uint32_t i : blocks_[b].spheres) {
-    const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
+    const Vec3 from = x - spheres_[i].center;
+    if (is_beyond(from, spheres_[i].radius, best.value)) continue;
+    const double d = norm(from) - spheres_[i].radius;
     if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};
   }
   if (best.value > 0) {
@@ -506,19 +563,41 @@ SeparationBound Space::separation(Vec3 x, double within) const {
   return best;
 }
 
-void Space::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
-  const auto number = static_cast<std::uint32_t>(spheres_.size());
-  spheres_.push_back(sphere);
-  const auto reaches = [&](const BlockTree::Cube& cube) {
-    const double list_distance =
-        cube.level == 0 ? kRootListDistance : kListDistance * edge_of_level(cube.level);
-    const double near = sphere.radius + list_distance + half_diagonal(cube.level);
-    return norm(cube.center() - sphere.center) < near;
-  };
-  tree_.visit(reaches, [&](std::uint32_t b) {
-    blocks_[b].spheres.push_back(number);
-    if (is_promising(b, focus_) && is_cut(b)) touched.push_back(b);
+std::vector<std::uint32_t> Space::place(std::span<const Sphere> spheres) {
+  const auto first = static_cast<std::uint32_t>(spheres_.size());
+  spheres_.insert(spheres_.end(), spheres.begin(), spheres.end());
+  std::vector<std::vector<std::uint32_t>> around(spheres.size());
+  parallel_for(spheres.size(), kSpheresPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) around[i] = blocks_around(spheres[i]);
   });
+  // Each task lists the spheres, in order, in the blocks of a range of its own.
+  std::vector<std::vector<std::uint32_t>> touched(kRanges);
+  parallel_for(kRanges, 1, [&](std::size_t range, std::size_t) {
+    const std::size_t low = range * blocks_.size() / kRanges,
+                      high = (range + 1) * blocks_.size() / kRanges;
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      for (const std::uint32_t b : around[i]) {
+        if (b < low || b >= high) continue;
+        blocks_[b].spheres.push_back(first + i);
+        if (is_promising(b, focus_) && is_cut(b)) touched[range].push_back(b);
+      }
+    }
+    std::sort(touched[range].begin(), touched[range].end());
+    touched[range].erase(std::unique(touched[range].begin(), touched[range].end()),
+                         touched[range].end());
+  });
+  return joined(touched);
+}
+
+// Returns the blocks that list a sphere.
+std::vector<std::uint32_t> Space::blocks_around(const Sphere& sphere) const {
+  const auto reach = [&](int level) {
+    return sphere.radius + kListDistance * edge_of_level(level) + half_diagonal(level);
+  };
+  std::vector<std::uint32_t> around;
+  around.reserve(kBlocksAround);
+  tree_.visit(sphere.center, reach, [&](std::uint32_t b) { around.push_back(b); });
+  return around;
 }
 
 void Space::update(const std::vector<std::uint32_t>& blocks) {
@@ -526,23 +605,32 @@ void Space::update(const std::vector<std::uint32_t>& blocks) {
     for (std::size_t i = begin; i < end; ++i) {
       Block& block = blocks_[blocks[i]];
       if (block.taken == block.spheres.size()) continue;
-      for (; block.taken < block.spheres.size(); ++block.taken)
-        take_from(block, spheres_[block.spheres[block.taken]]);
+      take_new(block);
       bounds_[blocks[i]] = block_bound(block);
     }
   });
 }
 
-void Space::take_from(Block& block, const Sphere& sphere) const {
-  for (Cell& cell : block.cells) {
-    const auto d = static_cast<float>(norm(cell.center() - sphere.center) - sphere.radius);
-    cell.d = std::min(cell.d, d);
-    cell.bound = std::min(cell.bound, round_up(farthest(cell, sphere)));
-  }
-  std::erase_if(block.cells, [&](const Cell& cell) { return cell.bound <= smallest_; });
-  std::erase_if(block.maxima, [&](const Sphere& m) {
-    return norm(m.center - sphere.center) - sphere.radius < m.radius;
+// Takes the spheres listed since the last call from the room of a block.
+void Space::take_new(Block& block) const {
+  const std::span<const std::uint32_t> fresh = std::span(block.spheres).subspan(block.taken);
+  block.taken = block.spheres.size();
+  std::erase_if(block.cells, [&](Cell& cell) {
+    for (const std::uint32_t i : fresh) take_from(cell, spheres_[i]);
+    return cell.bound <= smallest_;
   });
+  std::erase_if(block.maxima, [&](const Sphere& m) {
+    return std::any_of(fresh.begin(), fresh.end(), [&](std::uint32_t i) {
+      return norm(m.center - spheres_[i].center) - spheres_[i].radius < m.radius;
+    });
+  });
+}
+
+void Space::take_from(Cell& cell, const Sphere& sphere) {
+  const Vec3 from = cell.center() - sphere.center;
+  if (is_beyond(from, sphere.radius, double{std::max(cell.d, cell.bound)})) return;
+  cell.d = std::min(cell.d, static_cast<float>(norm(from) - sphere.radius));
+  cell.bound = std::min(cell.bound, round_up(farthest(cell, sphere)));
 }
 
 }  // namespace vpm

@@ -12,9 +12,9 @@
 // list distance, so that a clearance costs one lookup.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -48,6 +48,9 @@ class Space {
   // `most_blocks` blocks, those with the least room are left out. Keeps a reference to `solid`. All
   // coordinates are in its unit frame.
   Space(const SolidDistance& solid, double smallest, std::size_t most_blocks);
+  ~Space();  // by all threads: a million spheres have some three million blocks
+  Space(const Space&) = delete;
+  Space& operator=(const Space&) = delete;
 
   // Returns an upper bound on the radius of spheres that fit anywhere, except in blocks left out
   // and where local searches missed a maximum.
@@ -75,9 +78,9 @@ class Space {
   // negative if the point has no room.
   SeparationBound separation(Vec3 x, double within = 2) const;
 
-  // Places a sphere and appends the blocks around it that may be searched to `touched`. Clearances
-  // know it at once, bounds and searches after update() of these; others take it in focus().
-  void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
+  // Places spheres and returns the blocks around them, ascending, that may be searched. Clearances
+  // know them at once, bounds and searches after update() of these; others take them in focus().
+  std::vector<std::uint32_t> place(std::span<const Sphere> spheres);
   void update(const std::vector<std::uint32_t>& blocks);  // needs distinct blocks
 
   Vec3 closest_on_triangle(std::uint32_t triangle, Vec3 x) const {
@@ -106,19 +109,31 @@ class Space {
     Vec3 center() const { return {x, y, z}; }
   };
   struct Block {
-    double list_distance;  // clearances are exact up to this
-    std::vector<std::uint32_t> spheres;
+    double list_distance = 0;  // clearances are exact up to this
+    std::vector<std::uint32_t> spheres = {};
     std::size_t taken = 0;  // number of spheres known to cells and maxima
-    std::vector<Cell> cells;
+    std::vector<Cell> cells = {};
     // Local maxima found by searches of a larger radius.
-    std::vector<Sphere> maxima;
+    std::vector<Sphere> maxima = {};
+  };
+  // Eighths of a block.
+  struct Parts {
+    std::vector<Block> blocks;
+    unsigned kept = 0;  // a bit for each eighth that is in `blocks`, in their order
+  };
+
+  // Lists of a search.
+  struct Scratch {
+    std::vector<Cell> leaves, rest, pending;
+    std::vector<LinearBound> bounds;
   };
 
   std::vector<std::uint32_t> promising(double radius) const;
   bool is_cut(std::uint32_t block) const;
+  std::vector<std::uint32_t> blocks_around(const Sphere& sphere) const;
   void keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most) const;
   std::vector<std::uint32_t> split_blocks(const std::vector<std::uint32_t>& wide);
-  std::array<Block, 8> split_block(std::uint32_t number);
+  Parts split_block(std::uint32_t number);
   void split_cells(Block& block, int level, std::vector<Cell>& cells) const;
   void leave_out();
   void keep(const std::vector<std::uint32_t>& blocks);
@@ -127,15 +142,15 @@ class Space {
   void estimate(Cell& cell, const Block& block) const;
   void measure(Cell& cell) const;
   void bound_narrow_part(Cell& cell, const Block& block) const;
-  void refine(Block& block, double radius, double cap, std::vector<Cell>& leaves,
-              std::vector<Cell>& rest) const;
+  void refine(Block& block, double radius, double cap, Scratch& scratch) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
   double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
                      std::vector<LinearBound>& bounds) const;
   Side side_of(const Cell& cell, const Block& block) const;
   static void settle(Cell& cell, Side side);
   static double farthest(const Cell& cell, const Sphere& from);
-  void take_from(Block& block, const Sphere& sphere) const;
+  void take_new(Block& block) const;
+  static void take_from(Cell& cell, const Sphere& sphere);
   static float block_bound(const Block& block);
 
   const SolidDistance& solid_;
