@@ -37,6 +37,7 @@ constexpr double kRounding = 1e-12;
 // Number of blocks that a task looks through, and of ranges of blocks that list new spheres.
 constexpr std::size_t kNumbersPerTask = 1 << 11, kRanges = 64;
 constexpr std::size_t kBlocksAround = 64;  // that list a sphere, mostly
+constexpr std::size_t kAhead = 8;          // number of blocks that are read ahead
 // A block gives back memory when more than 1 / kUnusedPart of its cells' is unused, and takes 1 /
 // kSparePart more than it needs.
 constexpr std::size_t kUnusedPart = 4, kSparePart = 8;
@@ -135,12 +136,12 @@ std::vector<std::uint32_t> Space::focus(double radius, std::size_t most) {
       keep_most_room(blocks, most);
       const std::vector<std::uint32_t> wide = those([&](std::uint32_t b) { return !is_cut(b); });
       if (wide.empty()) break;
-      blocks = those([&](std::uint32_t b) { return is_cut(b); });
+      const std::vector<std::uint32_t> cut = those([&](std::uint32_t b) { return is_cut(b); });
       const std::vector<std::uint32_t> parts = split_blocks(wide);
-      blocks.insert(blocks.end(), parts.begin(), parts.end());
+      blocks.clear();
+      std::merge(cut.begin(), cut.end(), parts.begin(), parts.end(), std::back_inserter(blocks));
       blocks = those(has_hope);
     }
-    if (!std::is_sorted(blocks.begin(), blocks.end())) std::sort(blocks.begin(), blocks.end());
     if (!blocks.empty()) return blocks;
   }
 }
@@ -158,7 +159,7 @@ bool Space::is_cut(std::uint32_t block) const {
   return edge_of_level(level) <= kBlockWidth * focus_ || level == BlockTree::kMaxLevel;
 }
 
-// Keeps at most so many blocks.
+// Keeps at most so many blocks, ascending.
 void Space::keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most) const {
   if (blocks.size() <= most) return;
   const auto rank = [&](std::uint32_t b) {
@@ -168,6 +169,7 @@ void Space::keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most)
   std::nth_element(blocks.begin(), cut, blocks.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
   blocks.erase(cut, blocks.end());
+  std::sort(blocks.begin(), blocks.end());
 }
 
 // Returns the surface point nearest to the cell's centre, if nearer than `within`. Starts from the
@@ -376,31 +378,33 @@ Space::Parts Space::split_block(std::uint32_t number) {
   return parts;
 }
 
-// Cuts blocks into eighths and returns these. Blocks without any room stay whole, without cells.
+// Cuts blocks, ascending, into eighths and returns these, ascending. Blocks without any room stay
+// whole, without cells.
 std::vector<std::uint32_t> Space::split_blocks(const std::vector<std::uint32_t>& wide) {
   std::vector<Parts> parts(wide.size());
   parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) parts[i] = split_block(wide[i]);
   });
   std::vector<std::uint32_t> numbers;
-  std::vector<std::size_t> first;  // place in `numbers` of each block's first part
+  std::vector<std::uint32_t> second;  // number of each block's second part, which others follow
   for (std::size_t i = 0; i < wide.size(); ++i) {
     bounds_[wide[i]] = 0;
-    first.push_back(numbers.size());
+    second.push_back(tree_.size());
     if (parts[i].kept == 0) continue;
     numbers.push_back(wide[i]);
-    const std::uint32_t appended = tree_.size();
     tree_.cut(wide[i], parts[i].kept);
-    for (std::uint32_t b = appended; b < tree_.size(); ++b) numbers.push_back(b);
   }
+  for (auto b = static_cast<std::uint32_t>(blocks_.size()); b < tree_.size(); ++b)
+    numbers.push_back(b);
   blocks_.resize(tree_.size());
   bounds_.resize(tree_.size());
   parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t* b = numbers.data() + first[i];
+      std::uint32_t b = wide[i], next = second[i];
       for (Block& part : std::exchange(parts[i].blocks, {})) {
-        bounds_[*b] = block_bound(part);
-        blocks_[*b++] = std::move(part);
+        bounds_[b] = block_bound(part);
+        blocks_[b] = std::move(part);
+        b = next++;
       }
     }
   });
@@ -573,14 +577,20 @@ std::vector<std::uint32_t> Space::place(std::span<const Sphere> spheres) {
   // Each task lists the spheres, in order, in the blocks of a range of its own.
   std::vector<std::vector<std::uint32_t>> touched(kRanges);
   parallel_for(kRanges, 1, [&](std::size_t range, std::size_t) {
+    struct Listing {
+      std::uint32_t block, sphere;
+    };
     const std::size_t low = range * blocks_.size() / kRanges,
                       high = (range + 1) * blocks_.size() / kRanges;
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      for (const std::uint32_t b : around[i]) {
-        if (b < low || b >= high) continue;
-        blocks_[b].spheres.push_back(first + i);
-        if (is_promising(b, focus_) && is_cut(b)) touched[range].push_back(b);
-      }
+    std::vector<Listing> listings;
+    for (std::uint32_t i = 0; i < around.size(); ++i)
+      for (const std::uint32_t b : around[i])
+        if (b >= low && b < high) listings.push_back({b, first + i});
+    for (std::size_t k = 0; k < listings.size(); ++k) {
+      const auto [b, sphere] = listings[k];
+      if (k + kAhead < listings.size()) __builtin_prefetch(&blocks_[listings[k + kAhead].block]);
+      blocks_[b].spheres.push_back(sphere);
+      if (is_promising(b, focus_) && is_cut(b)) touched[range].push_back(b);
     }
     std::sort(touched[range].begin(), touched[range].end());
     touched[range].erase(std::unique(touched[range].begin(), touched[range].end()),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -75,12 +76,15 @@ TEST(Packer, EqualSpheresOfATubeTouch) {
 }
 
 TEST(Packer, SameBytesForEveryThreadCount) {
-  const Solid solid = random_solid(0, 1);
-  set_thread_count(1);
-  const PackResult one = pack(solid, {.spheres = 300});
-  for (const int threads : {2, 8}) {
-    set_thread_count(threads);
-    EXPECT_TRUE(same_bytes(one.spheres, pack(solid, {.spheres = 300}).spheres)) << threads;
+  // So many spheres have so many blocks of room that several threads look through them.
+  for (const auto& [solid, spheres] : {std::pair{random_solid(0, 1), std::size_t{300}},
+                                       std::pair{synthetic::make_cube(1), std::size_t{2000}}}) {
+    set_thread_count(1);
+    const PackResult one = pack(solid, {.spheres = spheres});
+    for (const int threads : {2, 8}) {
+      set_thread_count(threads);
+      EXPECT_TRUE(same_bytes(one.spheres, pack(solid, {.spheres = spheres}).spheres)) << threads;
+    }
   }
   set_thread_count(0);
 }
