@@ -89,10 +89,13 @@ Bounds project_all(const DrawnSolid& solid, const FloatPose& p, const Intrinsics
   return bounds;
 }
 
-// Returns the column or row of pixels whose squares hold the position, from `least` to `most`.
-int pixel_of(double position, int least, int most) {
-  return static_cast<int>(std::clamp(std::floor(position + 0.5), static_cast<double>(least),
-                                     static_cast<double>(most)));
+// Returns the column or row of pixels whose squares hold the position, from `least` to `most`, by
+// operations that vectors have.
+[[gnu::always_inline]] inline int pixel_of(double position, int least, int most) {
+  const double low = least, high = most, at = position + 0.5, above = at > low ? at : low,
+               inside = above < high ? above : high;
+  const int truncated = static_cast<int>(inside);
+  return truncated - (truncated > inside ? 1 : 0);
 }
 
 [[gnu::always_inline]] inline Floats lesser(const Floats& a, const Floats& b) {
@@ -105,7 +108,7 @@ int pixel_of(double position, int least, int most) {
   return a > b ? a : b;
 }
 
-// Widens the ranges of the first `count` of four pixels.
+// Widens the ranges of four pixels.
 [[gnu::always_inline]] inline void widen_four(float* pixels, const Floats& ranges) {
   store(lesser(load<Floats>(pixels), ranges), pixels);
 }
@@ -200,24 +203,127 @@ void take_least_beside(float* numbers, std::size_t width, std::size_t height, in
     take_least(numbers + 2 * width * v, 2 * width, 2, length);
 }
 
-// A corner of a triangle in the image, pixels.
-struct Corner {
-  double u, v;
+// Triangles, and pixels of a row, that are drawn at once, so that loops vectorise.
+constexpr int kTogether = 8;
+using Reals = double[kTogether];
+
+[[gnu::always_inline]] inline double lesser(double a, double b) {
+  return b < a ? b : a;
+}
+[[gnu::always_inline]] inline double greater(double a, double b) {
+  return a < b ? b : a;
+}
+
+// Sides of triangles in the image, pixels, from the upper end to the lower one.
+struct Edges {
+  Reals up_u, up_v, down_u, down_v;
 };
 
-// Widens [low, high] by the places of an edge in rows from `top` to `bottom`.
-void add_edge(const Corner& a, const Corner& b, double top, double bottom, double& low,
-              double& high) {
-  const Corner &up = a.v <= b.v ? a : b, &down = a.v <= b.v ? b : a;
-  if (down.v < top || up.v > bottom) return;
-  const auto at = [&](double v) {
-    if (v <= up.v) return up.u;
-    if (v >= down.v) return down.u;
-    return up.u + (v - up.v) / (down.v - up.v) * (down.u - up.u);
-  };
-  const double first = at(top), last = at(bottom);
-  low = std::min({low, first, last});
-  high = std::max({high, first, last});
+// Writes where the lines of edges meet the row `v`, also beyond the ends.
+[[gnu::always_inline]] inline void meet_row(const Edges& e, const Reals& v, double beside,
+                                            Reals& meets) {
+  for (int k = 0; k < kTogether; ++k)
+    meets[k] = e.up_u[k] +
+               (v[k] + beside - e.up_v[k]) / (e.down_v[k] - e.up_v[k]) * (e.down_u[k] - e.up_u[k]);
+}
+[[gnu::always_inline]] inline double within(const Edges& e, int k, double v, double meets) {
+  const double above = v >= e.down_v[k] ? e.down_u[k] : meets;
+  return v <= e.up_v[k] ? e.up_u[k] : above;
+}
+
+// Widens [low, high] by the places of edges in rows about v.
+[[gnu::always_inline]] inline void add_edges(const Edges& e, const Reals& v, Reals& low,
+                                             Reals& high) {
+  constexpr double kHalf = 0.5 + kPad;
+  Reals at_top, at_bottom;
+  meet_row(e, v, -kHalf, at_top);
+  meet_row(e, v, kHalf, at_bottom);
+  for (int k = 0; k < kTogether; ++k) {
+    const double top = v[k] - kHalf, bottom = v[k] + kHalf;
+    const bool is_there = (e.down_v[k] >= top) & (e.up_v[k] <= bottom);
+    const double first = within(e, k, top, at_top[k]), last = within(e, k, bottom, at_bottom[k]);
+    const double less = is_there ? lesser(first, last) : HUGE_VAL,
+                 more = is_there ? greater(first, last) : -HUGE_VAL;
+    low[k] = lesser(low[k], less);
+    high[k] = greater(high[k], more);
+  }
+}
+
+// Corners of triangles before the camera, in its coordinates.
+struct Corners {
+  Reals x[3] = {}, y[3] = {}, z[3] = {};
+};
+
+// Triangles in the image. Inverse depth is affine in each, and in a pixel's square at most `half`
+// from that in the pixel's middle.
+struct ProjectedTriangles {
+  Edges edges[3];
+  Reals inverse, u, v;  // of the first corner
+  Reals along_u, along_v, half;
+  Reals least, greatest;  // inverse depths of corners
+  Reals top, bottom;      // rows
+};
+
+[[gnu::always_inline]] inline void project_corners(const Corners& corners, const Intrinsics& camera,
+                                                   ProjectedTriangles& t) {
+  const double fx = camera.fx, fy = camera.fy, cx = camera.cx, cy = camera.cy;
+  for (int k = 0; k < kTogether; ++k) {
+    double p[3], q[3], w[3];
+    for (int i = 0; i < 3; ++i) {
+      w[i] = 1 / corners.z[i][k];
+      p[i] = fx * (corners.x[i][k] * w[i]) + cx;
+      q[i] = fy * (corners.y[i][k] * w[i]) + cy;
+    }
+    t.least[k] = lesser(lesser(w[0], w[1]), w[2]);
+    t.greatest[k] = greater(greater(w[0], w[1]), w[2]);
+    const double area = (p[1] - p[0]) * (q[2] - q[0]) - (p[2] - p[0]) * (q[1] - q[0]);
+    const double db = w[1] - w[0], dc = w[2] - w[0];
+    const bool is_seen_flat = std::abs(area) > 1e-9;  // else from the side: all of its range
+    const double slope_u = (db * (q[2] - q[0]) - dc * (q[1] - q[0])) / area,
+                 slope_v = (dc * (p[1] - p[0]) - db * (p[2] - p[0])) / area;
+    t.along_u[k] = is_seen_flat ? slope_u : 0;
+    t.along_v[k] = is_seen_flat ? slope_v : 0;
+    t.half[k] = is_seen_flat ? (0.5 + kPad) * (std::abs(slope_u) + std::abs(slope_v)) : HUGE_VAL;
+    t.inverse[k] = w[0], t.u[k] = p[0], t.v[k] = q[0];
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3;
+      const bool is_down = q[i] <= q[next];
+      t.edges[i].up_u[k] = is_down ? p[i] : p[next];
+      t.edges[i].up_v[k] = is_down ? q[i] : q[next];
+      t.edges[i].down_u[k] = is_down ? p[next] : p[i];
+      t.edges[i].down_v[k] = is_down ? q[next] : q[i];
+    }
+    t.top[k] = lesser(lesser(q[0], q[1]), q[2]);
+    t.bottom[k] = greater(greater(q[0], q[1]), q[2]);
+  }
+}
+
+// A plane's inverse depth in a row of pixels: middle(u) - half to middle(u) + half in their
+// squares, within that of a triangle's corners.
+struct PlaneInRow {
+  double inverse, along_u, u, along_row, half, least, greatest;
+};
+
+// Widens the ranges of the pixels from `first` to `last` of a row; there is room for kTogether
+// more.
+[[gnu::always_inline]] inline void widen_row(const PlaneInRow& plane, int first, int last,
+                                             float* row) {
+  for (int u = first; u <= last; u += kTogether) {
+    float found[2 * kTogether];
+    const int count = last - u + 1;
+    for (int i = 0; i < kTogether; ++i) {
+      const double middle = plane.inverse + plane.along_u * (u + i - plane.u) + plane.along_row;
+      const double low = middle - plane.half, high = middle + plane.half;
+      // An undefined middle, infinity times 0, leaves the corners' range.
+      const double far = low > plane.least ? lesser(low, plane.greatest) : plane.least;
+      const double near = high < plane.greatest ? greater(high, plane.least) : plane.greatest;
+      found[2 * i] = i < count ? static_cast<float>(far) : kNone;
+      found[2 * i + 1] = i < count ? static_cast<float>(-near) : kNone;
+    }
+    float* const pixels = row + 2 * static_cast<std::ptrdiff_t>(u);
+    for (int i = 0; i < 2 * kTogether && i < 2 * count; i += kLanes)
+      widen_four(pixels + i, load<Floats>(found + i));
+  }
 }
 
 }  // namespace
@@ -264,6 +370,22 @@ PixelWindow SolidImage::project(const DrawnSolid& solid, const Pose& to_camera, 
                        pixel_of(bounds.v1 + pad, most.v0 - 1, most.v1 - 1) + 1});
 }
 
+// Triangles that wait to be drawn together.
+struct SolidImage::Batch {
+  Corners corners;
+  int count = 0;
+
+  bool is_full() const { return count == kTogether; }
+  void add(const Vec3 (&at)[3]) {
+    for (int i = 0; i < 3; ++i) {
+      corners.x[i][count] = at[i].x;
+      corners.y[i][count] = at[i].y;
+      corners.z[i][count] = at[i].z;
+    }
+    ++count;
+  }
+};
+
 void SolidImage::draw(const PixelWindow& window) {
   window_ = window;
   moved_ = 0;
@@ -275,20 +397,22 @@ void SolidImage::draw(const PixelWindow& window) {
   others_.resize(triangles.size());
   const std::size_t others = draw_small({triangles.data(), triangles.size(), &vertices_.data()->u,
                                          window, &ranges_.data()->farthest, others_.data()});
-  for (std::size_t k = 0; k < others; ++k) draw_clipped(triangles[others_[k]]);
+  Batch batch;
+  for (std::size_t k = 0; k < others; ++k) draw_clipped(triangles[others_[k]], batch);
+  draw_batch(batch);
 }
 
-Vec3 SolidImage::in_camera(std::uint32_t vertex) const {
+[[gnu::always_inline]] inline Vec3 SolidImage::in_camera(std::uint32_t vertex) const {
   return to_camera_ * Vec3{solid_->x()[vertex], solid_->y()[vertex], solid_->z()[vertex]};
 }
 
 // Cuts off what is not before the camera, and draws the rest.
-void SolidImage::draw_clipped(const Triangle& triangle) {
+void SolidImage::draw_clipped(const Triangle& triangle, Batch& batch) {
+  const Vec3 whole[] = {in_camera(triangle[0]), in_camera(triangle[1]), in_camera(triangle[2])};
   Vec3 corners[4];
   int count = 0;
   for (int i = 0; i < 3; ++i) {
-    const Vec3 a = in_camera(triangle[static_cast<std::size_t>(i)]),
-               b = in_camera(triangle[static_cast<std::size_t>((i + 1) % 3)]);
+    const Vec3 &a = whole[i], &b = whole[(i + 1) % 3];
     const bool is_a_before = a.z > nearest_depth_, is_b_before = b.z > nearest_depth_;
     if (is_a_before) corners[count++] = a;
     if (is_a_before == is_b_before) continue;
@@ -298,49 +422,48 @@ void SolidImage::draw_clipped(const Triangle& triangle) {
     corners[count] = before + part * (behind - before);
     corners[count++].z = nearest_depth_;
   }
-  for (int i = 2; i < count; ++i) draw_large({corners[0], corners[i - 1], corners[i]});
+  for (int i = 2; i < count; ++i) {
+    batch.add({corners[0], corners[i - 1], corners[i]});
+    if (batch.is_full()) draw_batch(batch);
+  }
 }
 
-// Draws a triangle row by row: each pixel whose square it meets gets the range of inverse depth
-// that its plane, which is affine there, has in the square, within that of the corners.
-void SolidImage::draw_large(const Vec3 (&x)[3]) {
-  Corner p[3];
-  double inverse[3];
-  for (int i = 0; i < 3; ++i) {
-    inverse[i] = 1 / x[i].z;
-    p[i] = {k_.fx * (x[i].x * inverse[i]) + k_.cx, k_.fy * (x[i].y * inverse[i]) + k_.cy};
+// Draws triangles row by row: each pixel whose square one meets gets the range of inverse depth
+// that its plane has in the square, within that of the corners.
+VPM_VECTOR_CLONES
+void SolidImage::draw_batch(Batch& batch) {
+  const PixelWindow window = window_;
+  ProjectedTriangles t;
+  project_corners(batch.corners, k_, t);
+  int first_row[kTogether], last_row[kTogether], rows = 0;
+  for (int k = 0; k < kTogether; ++k) {
+    first_row[k] = pixel_of(t.top[k] - kPad, window.v0, window.v1);
+    last_row[k] = pixel_of(t.bottom[k] + kPad, window.v0 - 1, window.v1 - 1);
   }
-  const double least = std::min({inverse[0], inverse[1], inverse[2]}),
-               greatest = std::max({inverse[0], inverse[1], inverse[2]});
-  const double area = (p[1].u - p[0].u) * (p[2].v - p[0].v) - (p[2].u - p[0].u) * (p[1].v - p[0].v);
-  double along_u = 0, along_v = 0, half = HUGE_VAL;  // seen from the side: all of its range
-  if (std::abs(area) > 1e-9) {
-    const double db = inverse[1] - inverse[0], dc = inverse[2] - inverse[0];
-    along_u = (db * (p[2].v - p[0].v) - dc * (p[1].v - p[0].v)) / area;
-    along_v = (dc * (p[1].u - p[0].u) - db * (p[2].u - p[0].u)) / area;
-    half = (0.5 + kPad) * (std::abs(along_u) + std::abs(along_v));
-  }
-  const double top = std::min({p[0].v, p[1].v, p[2].v}),
-               bottom = std::max({p[0].v, p[1].v, p[2].v});
-  const int first_row = pixel_of(top - kPad, window_.v0, window_.v1),
-            last_row = pixel_of(bottom + kPad, window_.v0 - 1, window_.v1 - 1);
-  for (int v = first_row; v <= last_row; ++v) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int i = 0; i < 3; ++i)
-      add_edge(p[i], p[(i + 1) % 3], v - 0.5 - kPad, v + 0.5 + kPad, low, high);
-    if (!(low <= high)) continue;
-    const int first = pixel_of(low - kPad, window_.u0, window_.u1),
-              last = pixel_of(high + kPad, window_.u0 - 1, window_.u1 - 1);
-    DrawnRange* const row = ranges_.data() + first_of(v) - window_.u0;
-    for (int u = first; u <= last; ++u) {
-      const double middle = inverse[0] + along_u * (u - p[0].u) + along_v * (v - p[0].v);
-      // An undefined middle, infinity times 0, leaves the corners' range.
-      const double far = middle - half > least ? std::min(middle - half, greatest) : least;
-      const double near = middle + half < greatest ? std::max(middle + half, least) : greatest;
-      row[u].farthest = std::min(row[u].farthest, static_cast<float>(far));
-      row[u].nearest = std::min(row[u].nearest, static_cast<float>(-near));
+  for (int k = 0; k < batch.count; ++k) rows = std::max(rows, last_row[k] - first_row[k] + 1);
+  for (int row = 0; row < rows; ++row) {
+    int first[kTogether], last[kTogether];
+    Reals at, along_row, low, high;
+    for (int k = 0; k < kTogether; ++k) {
+      at[k] = first_row[k] + row;
+      along_row[k] = t.along_v[k] * (at[k] - t.v[k]);
+      low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
+    }
+    for (const Edges& edges : t.edges) add_edges(edges, at, low, high);
+    for (int k = 0; k < kTogether; ++k) {
+      first[k] = pixel_of(low[k] - kPad, window.u0, window.u1);
+      last[k] = pixel_of(high[k] + kPad, window.u0 - 1, window.u1 - 1);
+    }
+    for (int k = 0; k < batch.count; ++k) {
+      const int v = first_row[k] + row;
+      if (v > last_row[k] || !(low[k] <= high[k])) continue;
+      widen_row(
+          {t.inverse[k], t.along_u[k], t.u[k], along_row[k], t.half[k], t.least[k], t.greatest[k]},
+          first[k], last[k],
+          &ranges_[first_of(v)].farthest - 2 * static_cast<std::ptrdiff_t>(window.u0));
     }
   }
+  batch.count = 0;
 }
 
 void SolidImage::widen(int across, int down) {

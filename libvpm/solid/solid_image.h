@@ -98,9 +98,9 @@ class SolidImage {
     return static_cast<std::size_t>(v - window_.v0) * static_cast<std::size_t>(window_.width());
   }
   Vec3 in_camera(std::uint32_t vertex) const;
-  void draw_small_triangles();
-  void draw_clipped(const Triangle& triangle);
-  void draw_large(const Vec3 (&corners)[3]);
+  struct Batch;
+  void draw_clipped(const Triangle& triangle, Batch& batch);
+  void draw_batch(Batch& batch);
 
   const DrawnSolid* solid_ = nullptr;
   Pose to_camera_;  // from about the solid's centre of mass
