@@ -43,6 +43,8 @@ class FrameSlot {
   const Camera& camera() const { return camera_; }
   // Returns the image as the CPU prepares it, on the first call.
   const PreparedImage& prepared() const;
+  // Returns its surface, in the host's memory; of an image that a device has prepared that one.
+  virtual DepthSurface surface() const { return prepared().surface(); }
   // Returns that image's number; 0 if it has not been asked for.
   std::uint64_t serial() const;
 

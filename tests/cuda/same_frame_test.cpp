@@ -16,6 +16,7 @@
 #include "tests/cuda/frame_memory.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
+#include "tests/query/ring_of_cameras.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -255,6 +256,45 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
     frame = next;
   }
   EXPECT_GE(boundary, testing::expected_of(100));
+}
+
+// Rigs of frames that the device has prepared, alone and beside a cloud, give the bits of the
+// CPU's.
+TEST(FramesOnDevice, OfSeveralCameras) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const auto scene = synthetic::make_union(
+      {synthetic::make_block({0.24, 0.18, 0.2}, {testing::generic_rotation(), {}}),
+       synthetic::make_inverted_ball({}, 1.5)});
+  std::vector<Camera> cameras = testing::ring_of_cameras(3);
+  std::vector<DepthFrames> frames;
+  for (Camera& camera : cameras) {
+    camera = testing::with_larger_pixels(camera, 8, 8);
+    frames.push_back(
+        DepthFrames({camera.intrinsics, camera.width, camera.height, {}, {}, kDevice}));
+  }
+  const ToolModel tool = testing::lattice_cube(0.12, 6, 3);
+  ToolQuery on_cpu(tool, {}), on_device(tool, {.device = kDevice});
+  for (std::uint32_t round = 0; round < 2; ++round) {  // the second in the memory of the first
+    std::vector<DepthBody> made, clouds;
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      DepthImage image = synthetic::render(*scene, cameras[k]);
+      for (std::uint32_t p = round; p < image.depth.size(); p += 37) image.depth[p] = 0;
+      made.push_back(frame_of(frames[k], image, cameras[k].to_world));
+      clouds.emplace_back(make_cloud(image, cameras[k], {}));
+    }
+    const RigBody expected(clouds), found(made), mixed({clouds[0], made[1], made[2]});
+    double most = 0;
+    for (int k = 0; k < 6; ++k) {
+      const Pose pose{testing::generic_rotation(), {0.05 * std::cos(k), 0.05 * std::sin(k), 0.05}};
+      const Result result = on_cpu.run(expected, pose);
+      most = std::max(most, result.volume_fraction);
+      expect_equal(result, on_device.run(found, pose));
+      expect_equal(result, on_device.run(mixed, pose));
+      expect_equal(result, on_cpu.run(found, pose));
+    }
+    EXPECT_GT(most, 0.3);
+    EXPECT_EQ(expected.points(), found.points());
+  }
 }
 
 // Prepares images in turn in the same memory.

@@ -47,6 +47,7 @@ void CloudSlot::set_camera() {
 }
 
 void CloudSlot::begin() {
+  is_fetched_ = false;
   const auto& [rotation, translation] = camera().to_world;  // as PreparedImage accepts it
   is_plain_ = preparation_.fits && is_usual(camera()) && is_rotation(rotation, kRotationExact) &&
               is_in_range(translation);
@@ -119,6 +120,19 @@ bool CloudSlot::is_sound() const {
 std::size_t CloudSlot::points() const {
   if (is_plain_ && is_sound()) return value_of(poll(answer_.host()->points));
   return prepared().positions().size();
+}
+
+DepthSurface CloudSlot::surface() const {
+  if (!is_plain_ || !is_sound()) return prepared().surface();
+  const std::lock_guard lock(mutex_);
+  if (!is_fetched_) {
+    const CurrentDevice current(options().device.first());
+    if (!fetched_) fetched_.emplace(body_);
+    fetched_->fetch(stream_.get());
+    check(cudaStreamSynchronize(stream_.get()));
+    is_fetched_ = true;
+  }
+  return fetched_->surface();
 }
 
 }  // namespace vpm::cuda

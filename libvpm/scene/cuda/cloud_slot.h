@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 
 #include "libvpm/device/cuda/runtime.h"
 #include "libvpm/scene/cuda/cloud_prepare.h"
@@ -18,6 +19,7 @@ class CloudSlot : public FrameSlot {
   std::byte* image() override { return image_.host(); }
   void wait() const override;
   std::size_t points() const override;
+  DepthSurface surface() const override;
 
   // Makes work that is launched on the stream next wait for the frame. Thread-safe.
   void require(cudaStream_t stream) const;
@@ -51,8 +53,10 @@ class CloudSlot : public FrameSlot {
   bool is_plain_ = false;
   Event end_{cudaEventDisableTiming};  // end of the last preparation
   unsigned sequence_ = 0;              // number of the last preparation
-  mutable std::mutex mutex_;           // guards is_there_
+  mutable std::mutex mutex_;           // guards what follows
   mutable bool is_there_ = true;       // the last preparation has ended
+  mutable std::optional<FetchedImage> fetched_;
+  mutable bool is_fetched_ = false;  // `fetched_` holds what that has made
 };
 
 }  // namespace vpm::cuda

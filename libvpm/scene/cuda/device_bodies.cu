@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "libvpm/scene/cuda/cloud_slot.h"
 #include "libvpm/scene/cuda/device_bodies.h"
 
 namespace vpm::cuda {
@@ -14,10 +15,23 @@ std::size_t tile_count(const DepthSurface& image, int level) {
          static_cast<std::size_t>(image.tiles_per_row(level));
 }
 
+// Returns the number of tiles of all levels.
+std::size_t tile_count(const DepthSurface& image) {
+  std::size_t tiles = 0;
+  for (int level = 0; level < image.levels; ++level) tiles += tile_count(image, level);
+  return tiles;
+}
+
+// Returns the image where its preparation has left it on the current device, else null.
+const DeviceDepthBody* made_here(const DepthBody& image) {
+  const auto* const slot = dynamic_cast<const CloudSlot*>(image.slot());
+  const bool is_here = slot != nullptr && slot->options().device.first() == current_device();
+  return is_here && slot->is_on_device() && slot->is_sound() ? &slot->body() : nullptr;
+}
+
 }  // namespace
 
-DeviceDepthBody::DeviceDepthBody(const PreparedImage& image) {
-  const DepthSurface surface = image.surface();
+DeviceDepthBody::DeviceDepthBody(const DepthSurface& surface) {
   const std::size_t pixels = pixels_of(surface);
   std::vector<InverseDepthRange> tiles;
   for (int level = 0; level < surface.levels; ++level)
@@ -37,10 +51,8 @@ DeviceDepthBody::DeviceDepthBody(const Camera& camera) {
          ((std::max(image.width, image.height) - 1) >> (image.levels - 1)) > 0)
     ++image.levels;
   const std::size_t pixels = pixels_of(image);
-  std::size_t tiles = 0;
-  for (int level = 0; level < image.levels; ++level) tiles += tile_count(image, level);
   set(image, {memory_.room<Vec3f>(pixels), memory_.room<float>(pixels)},
-      memory_.room<InverseDepthRange>(tiles));
+      memory_.room<InverseDepthRange>(tile_count(image)));
 }
 
 void DeviceDepthBody::set(const DepthSurface& image, const ImageRoom& room,
@@ -54,6 +66,28 @@ void DeviceDepthBody::set(const DepthSurface& image, const ImageRoom& room,
   }
   surface_.normals = room.normals;
   surface_.measured = room.measured;
+}
+
+FetchedImage::FetchedImage(const DeviceDepthBody& image)
+    : image_(image.surface()),
+      normals_(pixels_of(image_)),
+      measured_(pixels_of(image_)),
+      tiles_(tile_count(image_)),
+      surface_(image_) {
+  surface_.normals = normals_.host();
+  surface_.measured = measured_.host();
+  for (int level = 0; level < image_.levels; ++level)
+    surface_.tiles[level] = tiles_.host() + (image_.tiles[level] - image_.tiles[0]);
+}
+
+void FetchedImage::fetch(cudaStream_t stream) {
+  const auto copy = [&](const auto* from, const auto& to) {
+    check(
+        cudaMemcpyAsync(to.host(), from, to.size() * sizeof *from, cudaMemcpyDeviceToHost, stream));
+  };
+  copy(image_.normals, normals_);
+  copy(image_.measured, measured_);
+  copy(image_.tiles[0], tiles_);
 }
 
 DevicePointsBody::DevicePointsBody(const PreparedPoints& points) : surface_(points.surface()) {
@@ -75,10 +109,15 @@ DevicePointsBody::DevicePointsBody(const PreparedPoints& points) : surface_(poin
 DeviceRigBody::DeviceRigBody(const PreparedRig& rig) : surface_(rig.surface()) {
   const auto count = static_cast<std::size_t>(surface_.count);
   std::vector<RigCamera> cameras(surface_.cameras, surface_.cameras + count);
-  images_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const ImageSilhouettes& found = rig.images()[i].silhouettes();
-    cameras[i].image = images_.emplace_back(rig.images()[i].prepared()).surface();
+    const DepthBody& image = rig.images()[i];
+    if (const DeviceDepthBody* const here = made_here(image)) {
+      made_here_.push_back(image);  // which keeps its memory; the rig has waited for it
+      cameras[i].image = here->surface();
+    } else {
+      cameras[i].image = copies_.emplace_back(image.surface()).surface();
+    }
+    const ImageSilhouettes& found = image.silhouettes();
     cameras[i].silhouettes = {memory_.copy(found.pixels()),
                               memory_.copy(found.nearest()),
                               memory_.copy(found.sums()),

@@ -26,7 +26,8 @@ struct ImageRoom {
 
 class DeviceDepthBody {
  public:
-  explicit DeviceDepthBody(const PreparedImage& image);
+  explicit DeviceDepthBody(const PreparedImage& image) : DeviceDepthBody(image.surface()) {}
+  explicit DeviceDepthBody(const DepthSurface& surface);
   // Allocates memory for an image, which kernels fill (cloud_prepare.h).
   explicit DeviceDepthBody(const Camera& camera);
 
@@ -42,6 +43,23 @@ class DeviceDepthBody {
   DepthSurface surface_;
 };
 
+// Holds what a device has made of an image in the host's memory.
+class FetchedImage {
+ public:
+  explicit FetchedImage(const DeviceDepthBody& image);
+
+  // Begins to copy the image, in a stream.
+  void fetch(cudaStream_t stream);
+  const DepthSurface& surface() const { return surface_; }
+
+ private:
+  const DepthSurface image_;  // on the device
+  MappedArray<Vec3f> normals_;
+  MappedArray<float> measured_;
+  MappedArray<InverseDepthRange> tiles_;  // all levels, one after another
+  DepthSurface surface_;
+};
+
 class DevicePointsBody {
  public:
   explicit DevicePointsBody(const PreparedPoints& points);
@@ -52,14 +70,15 @@ class DevicePointsBody {
   DiskSurface surface_;
 };
 
-// Holds the images of several cameras. Copies them even where they were made on a device.
+// Holds the images of several cameras. Copies those that were not made on this device.
 class DeviceRigBody {
  public:
   explicit DeviceRigBody(const PreparedRig& rig);
   const RigSurface& surface() const { return surface_; }
 
  private:
-  std::vector<DeviceDepthBody> images_;
+  std::vector<DepthBody> made_here_;
+  std::vector<DeviceDepthBody> copies_;
   DeviceMemory memory_;
   RigSurface surface_;
 };

@@ -19,8 +19,12 @@ DepthBody::DepthBody(PreparedImage image)
 DepthBody::DepthBody(std::shared_ptr<const FrameSlot> slot)
     : slot_(std::move(slot)), silhouettes_(std::make_shared<SharedSilhouettes>()) {}
 
-const Pose& DepthBody::to_world() const {
-  return (slot_ ? slot_->camera() : image_->camera()).to_world;
+const Camera& DepthBody::camera() const {
+  return slot_ ? slot_->camera() : image_->camera();
+}
+
+DepthSurface DepthBody::surface() const {
+  return slot_ ? slot_->surface() : image_->surface();
 }
 
 std::size_t DepthBody::points() const {
@@ -36,8 +40,7 @@ const PreparedImage& DepthBody::prepared() const {
 }
 
 const ImageSilhouettes& DepthBody::silhouettes() const {
-  std::call_once(silhouettes_->once,
-                 [&] { silhouettes_->found = ImageSilhouettes(prepared().surface()); });
+  std::call_once(silhouettes_->once, [&] { silhouettes_->found = ImageSilhouettes(surface()); });
   return silhouettes_->found;
 }
 

@@ -31,13 +31,15 @@ class DepthBody {
   explicit DepthBody(std::shared_ptr<const FrameSlot> slot);
 
   // Returns what maps the surface's frame, which is the camera's, to the world's.
-  const Pose& to_world() const;
+  const Pose& to_world() const { return camera().to_world; }
+  const Camera& camera() const;
   // Returns the number of pixels that have a normal. Waits for the preparation.
   std::size_t points() const;
   // Returns the image as the CPU prepares it: a device's frame on the first call. Throws what
   // PreparedImage throws.
   const PreparedImage& prepared() const;
-  DepthSurface surface() const { return prepared().surface(); }
+  // Returns the surface in the host's memory. Of a device's frame the first call fetches it.
+  DepthSurface surface() const;
   // Returns the silhouettes of the prepared image. The first call finds them, for all copies.
   const ImageSilhouettes& silhouettes() const;
   std::uint64_t serial() const;

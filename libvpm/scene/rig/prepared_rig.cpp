@@ -25,8 +25,7 @@ auto key_of(const Camera& camera) {
 }
 
 // Orders images of equal cameras by their pixels.
-int compare_pixels(const PreparedImage& a, const PreparedImage& b) {
-  const DepthSurface one = a.surface(), other = b.surface();
+int compare_pixels(const DepthSurface& one, const DepthSurface& other) {
   const std::int32_t pixels = one.width * one.height;
   for (std::int32_t i = 0; i < pixels; ++i) {
     const auto key = [i](const DepthSurface& image) {
@@ -42,8 +41,8 @@ int compare_pixels(const PreparedImage& a, const PreparedImage& b) {
 }
 
 int compare(const DepthBody& a, const DepthBody& b) {
-  const auto one = key_of(a.prepared().camera()), other = key_of(b.prepared().camera());
-  return one < other ? -1 : other < one ? 1 : compare_pixels(a.prepared(), b.prepared());
+  const auto one = key_of(a.camera()), other = key_of(b.camera());
+  return one < other ? -1 : other < one ? 1 : compare_pixels(a.surface(), b.surface());
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ std::size_t PreparedRig::point_count() const {
 std::size_t PreparedRig::most_ranges() const {
   return std::accumulate(
       images_.begin(), images_.end(), std::size_t{0},
-      [](std::size_t sum, const DepthBody& body) { return sum + body.prepared().most_ranges(); });
+      [](std::size_t sum, const DepthBody& body) { return sum + body.camera().height; });
 }
 
 const PreparedRig::Points& PreparedRig::points() const {
