@@ -79,7 +79,7 @@ class DeviceRigBody {
  private:
   std::vector<DepthBody> made_here_;
   std::vector<DeviceDepthBody> copies_;
-  DeviceMemory memory_;
+  DeviceArray<std::byte> room_, copied_;  // what kernels fill, and what the host gives
   RigSurface surface_;
 };
 

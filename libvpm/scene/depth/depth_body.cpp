@@ -8,7 +8,7 @@
 namespace vpm {
 
 struct SharedSilhouettes {
-  std::once_flag once;
+  std::once_flag once, once_spread;
   ImageSilhouettes found;
 };
 
@@ -41,6 +41,12 @@ const PreparedImage& DepthBody::prepared() const {
 
 const ImageSilhouettes& DepthBody::silhouettes() const {
   std::call_once(silhouettes_->once, [&] { silhouettes_->found = ImageSilhouettes(surface()); });
+  return silhouettes_->found;
+}
+
+const ImageSilhouettes& DepthBody::spread_silhouettes() const {
+  silhouettes();
+  std::call_once(silhouettes_->once_spread, [&] { silhouettes_->found.spread(surface()); });
   return silhouettes_->found;
 }
 

@@ -40,8 +40,10 @@ class DepthBody {
   const PreparedImage& prepared() const;
   // Returns the surface in the host's memory. Of a device's frame the first call fetches it.
   DepthSurface surface() const;
-  // Returns the silhouettes of the prepared image. The first call finds them, for all copies.
+  // Return the silhouettes of the prepared image, and these with what view() tells of them. The
+  // first call finds them, for all copies.
   const ImageSilhouettes& silhouettes() const;
+  const ImageSilhouettes& spread_silhouettes() const;
   std::uint64_t serial() const;
 
   // Returns the memory of a frame that DepthFrames has prepared, else null.

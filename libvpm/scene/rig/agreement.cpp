@@ -105,12 +105,17 @@ RigAgreement agreement_of(std::span<const RigCamera> cameras) {
   for_each(count, [&](std::size_t i) { pixels[i] = clear_pixels(cameras[i], kStep); });
   RigAgreement agreement;
   agreement.of_pairs.assign(count * count, kUnknown);
+  std::vector<std::vector<Deviation>> seen(count * count);  // of camera i's pixels by camera j
+  for_each(count * count, [&](std::size_t pair) {
+    const std::size_t i = pair / count, j = pair % count;
+    if (i != j) add_deviations(pixels[i], cameras[j], seen[pair]);
+  });
   for_each(count * count, [&](std::size_t pair) {
     const std::size_t i = pair / count, j = pair % count;
     if (i >= j) return;
-    std::vector<Deviation> deviations;
-    add_deviations(pixels[i], cameras[j], deviations);
-    add_deviations(pixels[j], cameras[i], deviations);
+    std::vector<Deviation>& deviations = seen[pair];
+    const std::vector<Deviation>& other = seen[j * count + i];
+    deviations.insert(deviations.end(), other.begin(), other.end());
     if (deviations.size() <= kFewReadings) return;
     agreement.of_pairs[pair] = agreement.of_pairs[j * count + i] = deviation_of(deviations);
   });

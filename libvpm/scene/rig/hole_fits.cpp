@@ -11,6 +11,7 @@
 
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/core/lanes.h"
+#include "libvpm/core/parallel.h"
 
 namespace vpm {
 namespace {
@@ -149,7 +150,7 @@ class HoleSearch {
   void fit_parts(Hole hole, const Fit& fit) {
     if (hole.wide() <= kWidest && hole.high() <= kWidest) {
       add_rim(hole);
-      return fit(hole);
+      return fit(std::move(hole));
     }
     const bool is_wide = hole.wide() > hole.high();
     const auto is_first = [&](const Pixel& at) {
@@ -511,14 +512,26 @@ ImageHoles::ImageHoles(const DepthSampler& image) {
     numbers_.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     greatest_.resize(columns * static_cast<std::size_t>(HoleFits::tiles(image.height)));
     for (const Pixel& at : pixels) {
-      numbers_[static_cast<std::size_t>(at.v * image.width + at.u)] =
-          static_cast<std::uint32_t>(fits_.size());
+      const auto pixel = static_cast<std::uint32_t>(at.v * image.width + at.u),
+                 number = static_cast<std::uint32_t>(fits_.size());
+      numbers_[pixel] = number;
+      numbered_.push_back({pixel, number});
       float& greatest = greatest_[static_cast<std::size_t>(at.v >> HoleFits::kTileShift) * columns +
                                   static_cast<std::size_t>(at.u >> HoleFits::kTileShift)];
       greatest = std::max(greatest, greatest_at(fit, at));
     }
   };
-  HoleSearch(image).run([&](const Hole& part) { fit_hole(image, part, tell); });
+  std::vector<Hole> parts;
+  HoleSearch(image).run([&](Hole part) { parts.push_back(std::move(part)); });
+  std::vector<std::vector<std::pair<HoleFit, std::vector<Pixel>>>> fitted(parts.size());
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      fit_hole(image, parts[k], [&](const HoleFit& fit, std::vector<Pixel>& pixels) {
+        fitted[k].emplace_back(fit, std::move(pixels));
+      });
+  });
+  for (const auto& fits : fitted)
+    for (const auto& [fit, pixels] : fits) tell(fit, pixels);
   columns_ = static_cast<std::int32_t>(columns);
 }
 

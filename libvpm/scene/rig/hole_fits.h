@@ -62,6 +62,10 @@ struct HoleFits {
   }
 };
 
+struct NumberedPixel {
+  std::uint32_t pixel = 0, number = 0;
+};
+
 class ImageHoles {
  public:
   ImageHoles() = default;
@@ -76,12 +80,15 @@ class ImageHoles {
   }
   const std::vector<HoleFit>& fits() const { return fits_; }
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+  // Returns the pixels that have a number, and it.
+  const std::vector<NumberedPixel>& numbered() const { return numbered_; }
   const std::vector<float>& greatest() const { return greatest_; }
 
  private:
   std::vector<HoleFit> fits_;
   std::vector<std::uint32_t> numbers_;  // empty if there are no fits
-  std::vector<float> greatest_;         // too
+  std::vector<NumberedPixel> numbered_;
+  std::vector<float> greatest_;  // empty without fits, too
   std::int32_t columns_ = 0;
 };
 

@@ -10,6 +10,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/scene/frame_slot.h"
 
 namespace vpm {
 namespace {
@@ -57,6 +58,13 @@ std::vector<DepthBody> different_images(std::vector<DepthBody> images) {
   return images;
 }
 
+template <class Body>
+void PreparedRig::for_each_image(const Body& body) const {
+  parallel_for(images_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(images_[i]);
+  });
+}
+
 PreparedRig::PreparedRig(std::vector<DepthBody> images)
     : images_(different_images(std::move(images))) {
   if (images_.empty()) throw Error(ErrorKind::invalid_argument, "a rig needs a camera");
@@ -66,19 +74,30 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images)
                 "there are " + std::to_string(images_.size()) + " depth images, but " +
                     std::to_string(kMost) + " cameras at most are one body",
                 {}, "leave out those that show least");
-  parallel_for(images_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) images_[i].silhouettes();
-  });
+  for_each_image([](const DepthBody& image) { image.silhouettes(); });
   place_cameras();
   agreement_ = agreement_of(cameras_);
+  const auto is_of_device = [](const DepthBody& image) {
+    return image.slot() != nullptr && image.slot()->options().device.is_cuda();
+  };
+  if (std::ranges::none_of(images_, is_of_device)) spread_cameras();  // else when the host asks
 }
 
 void PreparedRig::place_cameras() {
   for (std::size_t i = 0; i < images_.size(); ++i) {
     const Pose to_rig = relative_to(to_world(), images_[i].to_world());
-    cameras_.push_back(
-        {images_[i].surface(), images_[i].silhouettes().view(), inverse(to_rig), to_rig});
+    cameras_.push_back({images_[i].surface(), {}, inverse(to_rig), to_rig});
   }
+}
+
+const std::vector<RigCamera>& PreparedRig::spread_cameras() const {
+  std::call_once(spread_->once, [&] {
+    for_each_image([](const DepthBody& image) { image.spread_silhouettes(); });
+    spread_->all = cameras_;
+    for (std::size_t i = 0; i < images_.size(); ++i)
+      spread_->all[i].silhouettes = images_[i].spread_silhouettes().view();
+  });
+  return spread_->all;
 }
 
 std::size_t PreparedRig::point_count() const {

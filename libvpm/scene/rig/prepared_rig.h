@@ -33,10 +33,18 @@ class PreparedRig {
 
   // Maps the rig's frame, which is that of the first camera, to the world's.
   const Pose& to_world() const { return images_.front().to_world(); }
+  // Returns the surface on the host. The first call spreads the silhouettes, which devices do
+  // themselves.
   RigSurface surface() const {
-    return {cameras_.data(), agreement_.of_pairs.data(), static_cast<std::int32_t>(cameras_.size()),
-            agreement_.most, agreement_.well_before};
+    return surface_of(spread_cameras().data(), agreement_.of_pairs.data());
   }
+  // Returns the surface of cameras and of their agreement, where these lie.
+  RigSurface surface_of(const RigCamera* cameras, const double* of_pairs) const {
+    return {cameras, of_pairs, static_cast<std::int32_t>(cameras_.size()), agreement_.most,
+            agreement_.well_before};
+  }
+  // Returns the cameras, images in the host's memory, without silhouettes.
+  const std::vector<RigCamera>& cameras() const { return cameras_; }
 
   // Return the points of all images about origin() and their normals, world axes.
   Vec3 origin() const { return images_.front().prepared().origin(); }
@@ -64,7 +72,15 @@ class PreparedRig {
     std::vector<Vec3f> positions, normals;
   };
 
+  struct SpreadCameras {
+    std::once_flag once;
+    std::vector<RigCamera> all;
+  };
+
+  template <class Body>
+  void for_each_image(const Body& body) const;
   void place_cameras();
+  const std::vector<RigCamera>& spread_cameras() const;
   // Returns the points of all images. The first call makes the list, for few queries read it.
   const Points& points() const;
 
@@ -72,6 +88,7 @@ class PreparedRig {
   std::vector<DepthBody> images_;
   std::vector<RigCamera> cameras_;
   RigAgreement agreement_;
+  std::unique_ptr<SpreadCameras> spread_ = std::make_unique<SpreadCameras>();
   std::unique_ptr<Points> points_ = std::make_unique<Points>();
 };
 

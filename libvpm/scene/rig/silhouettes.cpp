@@ -1,7 +1,6 @@
 #include "libvpm/scene/rig/silhouettes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -222,11 +221,9 @@ std::vector<std::int8_t> rows_down(const std::vector<std::uint8_t>& is_silhouett
 
 // Offers what stands in a column, by its key, to the pixels [first, last] of a row.
 VPM_VECTOR_CLONES
-void offer_column(int column, int first, int last, std::int32_t rows, std::int32_t limit,
-                  std::int32_t columns, std::int32_t none, std::int32_t* keys) {
+void offer_column(int column, int first, int last, std::int32_t rows, std::int32_t* keys) {
   for (int u = first; u <= last; ++u) {
-    const std::int32_t squared = (u - column) * (u - column) + rows;
-    const std::int32_t offered = squared < limit ? squared * columns + column : none;
+    const std::int32_t offered = SilhouetteKeys::key(u - column, rows, column);
     keys[u] = offered < keys[u] ? offered : keys[u];
   }
 }
@@ -237,18 +234,13 @@ void offer_column(int column, int first, int last, std::int32_t rows, std::int32
 class NearestInRow {
  public:
   // Takes the width of the image, and how many times as high as wide a pixel is.
-  NearestInRow(int width, double height) : width_(width), keys_(static_cast<std::size_t>(width)) {
-    for (std::size_t down = 0; down < squared_rows_.size(); ++down) {
-      const double rows = static_cast<double>(down) * height;
-      squared_rows_[down] =
-          rows < kSilhouetteReach ? static_cast<std::int32_t>(std::lround(rows * rows)) : kSquared;
-    }
-  }
+  NearestInRow(int width, double height)
+      : width_(width), rule_(height), keys_(static_cast<std::size_t>(width)) {}
 
   // Takes the row's rows_down(). Calls take(u, column) for each pixel that has one.
   template <class Take>
   void run(const std::int8_t* down, const Take& take) {
-    std::fill(keys_.begin(), keys_.end(), kNone);
+    std::fill(keys_.begin(), keys_.end(), SilhouetteKeys::kNone);
     bool any = false;
     for (int u = 0; u < width_; ++u) {
       if (down[u] == -kFarRows) continue;
@@ -257,28 +249,21 @@ class NearestInRow {
     }
     for (int u = 0; any && u < width_; ++u) {
       const std::int32_t key = keys_[static_cast<std::size_t>(u)];
-      if (key != kNone) take(u, key % kColumns);
+      if (key != SilhouetteKeys::kNone) take(u, SilhouetteKeys::column_of(key));
     }
   }
 
  private:
-  static constexpr std::int32_t kColumns = 1 << 17;  // more than an image has
-  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
-  static constexpr std::int32_t kSquared = kSilhouetteReach * kSilhouetteReach;
-  static_assert(kColumns > static_cast<std::int64_t>(DepthSampler::kMostPixelsASide) &&
-                kSquared < kNone / kColumns);
-
   // Offers the silhouette pixel of a column, `down` rows below, to the pixels of the row.
   void spread(int column, int down) {
-    const std::int32_t rows = squared_rows_[static_cast<std::size_t>(std::abs(down))];
+    const std::int32_t rows = rule_.squared_rows[std::abs(down)];
     const int first = std::max(column - kSilhouetteReach, 0);
     const int last = std::min(column + kSilhouetteReach, width_ - 1);
-    offer_column(column, first, last, rows, kSquared, kColumns, kNone, keys_.data());
+    offer_column(column, first, last, rows, keys_.data());
   }
 
   int width_;
-  // Square of a distance in rows, in widths of a pixel, and less than kSquared where it is read.
-  std::array<std::int32_t, kSilhouetteReach + 1> squared_rows_;
+  SilhouetteKeys rule_;
   std::vector<std::int32_t> keys_;  // squared distance and column
 };
 
@@ -294,6 +279,14 @@ void mark_tiles(const std::uint32_t* numbers, int width, std::uint32_t* marks) {
 
 }  // namespace
 
+SilhouetteKeys::SilhouetteKeys(double height) {
+  for (int down = 0; down <= kSilhouetteReach; ++down) {
+    const double rows = down * height;
+    squared_rows[down] =
+        rows < kSilhouetteReach ? static_cast<std::int32_t>(std::lround(rows * rows)) : kSquared;
+  }
+}
+
 ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
   const FilledImage all = filled(image);
   std::vector<std::vector<SilhouettePixel>> of_bands(
@@ -303,7 +296,11 @@ ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
   });
   for (const std::vector<SilhouettePixel>& band : of_bands)
     pixels_.insert(pixels_.end(), band.begin(), band.end());
-  nearest_.assign(all.values.size(), 0);
+}
+
+void ImageSilhouettes::spread(const DepthSampler& image) {
+  nearest_.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                  0);
   if (!pixels_.empty()) find_nearest(image);
   sum_tiles(image.width, image.height);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libvpm/scene/depth/depth_sampler.h"
@@ -48,19 +49,44 @@ struct Silhouettes {
 // Greatest distance, in widths of a pixel and in rows, at which a silhouette is read.
 inline constexpr int kSilhouetteReach = 24;
 
+// Orders silhouette pixels by their distance from a pixel of the image: the nearest has the least
+// key. Of a column only the one counts that is fewest rows away, above before below.
+struct SilhouetteKeys {
+  static constexpr std::int32_t kSquared = kSilhouetteReach * kSilhouetteReach;
+  static constexpr std::int32_t kColumns = 1 << 17;  // more than an image has
+  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+  static_assert(kColumns > static_cast<std::int64_t>(DepthSampler::kMostPixelsASide) &&
+                kSquared < kNone / kColumns);
+
+  // By rows, the square of their distance in widths of a pixel; kSquared for those that are not
+  // read.
+  std::int32_t squared_rows[kSilhouetteReach + 1];
+
+  // Takes how many times as high as wide a pixel is.
+  explicit SilhouetteKeys(double height);
+  // Returns the key of one that is in a column, `across` columns away; kNone beyond the reach.
+  VPM_HD static constexpr std::int32_t key(std::int32_t across, std::int32_t squared_rows,
+                                           std::int32_t column) {
+    const std::int32_t squared = across * across + squared_rows;
+    return squared < kSquared ? squared * kColumns + column : kNone;
+  }
+  VPM_HD static constexpr std::int32_t column_of(std::int32_t key) { return key % kColumns; }
+};
+
 class ImageSilhouettes {
  public:
   ImageSilhouettes() = default;
   // Finds the silhouettes of an image, and fits its holes. A hole within three pixels of a
   // silhouette counts as what is beyond it; what was removed tells nothing of what is there.
   explicit ImageSilhouettes(const DepthSampler& image);
+  // Finds the nearest silhouette of each pixel, for view(). A device does so itself
+  // (cuda/rig_silhouettes.h).
+  void spread(const DepthSampler& image);
 
   Silhouettes view() const {
     return {pixels_.data(), nearest_.data(), sums_.data(), columns_, holes_.view()};
   }
   const std::vector<SilhouettePixel>& pixels() const { return pixels_; }
-  const std::vector<std::uint32_t>& nearest() const { return nearest_; }
-  const std::vector<std::uint32_t>& sums() const { return sums_; }
   const ImageHoles& holes() const { return holes_; }
 
  private:
