@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <thread>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
@@ -254,15 +255,47 @@ struct Group {
   GroupErrors all;
   std::vector<double> microseconds;           // of queries
   std::vector<double> core_ready, two_ready;  // ms, in which all images become ready
+  std::vector<double> device_ready;           // ms, to the first answer there
 };
+
+std::vector<DepthFrames> frames_of(const std::vector<CloudSensor>& images, const Device& device) {
+  std::vector<DepthFrames> frames;
+  for (const auto& [camera, image] : images)
+    frames.emplace_back(
+        DepthFrameOptions{camera.intrinsics, camera.width, camera.height, {}, {}, device});
+  return frames;
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Adds the time from images in the frames' own memory to the first answer of a device, with all
+// threads of the host.
+void time_on_device(const std::vector<CloudSensor>& images, int runs, const Device& device,
+                    const ToolModel& tool, Group& group) {
+  const ThreadCap cap({}, static_cast<int>(std::thread::hardware_concurrency()));
+  std::vector<DepthFrames> frames = frames_of(images, device);
+  QueryOptions options;
+  options.device = device;
+  ToolQuery query(tool, options);
+  constexpr int kWarmUps = 5;
+  for (int run = -kWarmUps; run < runs; ++run) {
+    for (std::size_t k = 0; k < images.size(); ++k)
+      std::ranges::copy(images[k].depth.depth, frames[k].metres().begin());
+    const double start = wall_seconds();
+    std::vector<DepthBody> bodies;
+    for (std::size_t k = 0; k < images.size(); ++k)
+      bodies.push_back(frames[k].prepare(images[k].camera.to_world));
+    query.run(RigBody(std::move(bodies)), Pose{});
+    if (run >= 0) group.device_ready.push_back(1e3 * (wall_seconds() - start));
+  }
+}
 
 // Makes images ready for queries again and again, as they come from cameras. Adds the time of a
 // core that this takes, and the time that it takes on two.
 void time_preparation(const std::vector<CloudSensor>& images, int runs, Group& group) {
-  std::vector<DepthFrames> frames;
-  for (const auto& [camera, image] : images)
-    frames.emplace_back(
-        DepthFrameOptions{camera.intrinsics, camera.width, camera.height, {}, {}, {}});
+  std::vector<DepthFrames> frames = frames_of(images, {});
   std::optional<RigBody> rig;  // the last one, as long as nothing replaces it
   const auto prepare = [&] {
     std::vector<DepthBody> bodies;
@@ -277,10 +310,6 @@ void time_preparation(const std::vector<CloudSensor>& images, int runs, Group& g
     const double start = clock();
     prepare();
     return 1e3 * (clock() - start);
-  };
-  const auto wall_seconds = [] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
   };
   constexpr int kWarmUps = 2;
   for (int k = 0; k < kWarmUps; ++k) prepare();
@@ -315,7 +344,7 @@ using Groups = std::map<std::pair<std::string, std::size_t>, Group>;  // conditi
 
 // Measures all ways into a scene before one to four cameras, and under all conditions.
 void measure(const CameraScene& scene, const std::vector<PackedSolid>& tools, int ways, int poses,
-             Groups& groups) {
+             const Device& device, Groups& groups) {
   const std::vector<Camera> cameras = cameras_around(scene);
   const std::vector<WayIn> all_ways = ways_into(scene, cameras, tools, ways, poses);
   for (const Condition& condition : kConditions) {
@@ -325,8 +354,10 @@ void measure(const CameraScene& scene, const std::vector<PackedSolid>& tools, in
       for (const WayIn& way_in : all_ways)
         measure(way_in, body, count, groups[{condition.name, count}]);
     }
-    if (!condition.is_registered && condition.off == 0)
-      time_preparation(images, ways, groups[{condition.name, kMostCameras}]);
+    if (condition.is_registered || condition.off != 0) continue;
+    Group& group = groups[{condition.name, kMostCameras}];
+    time_preparation(images, ways, group);
+    if (device.is_cuda()) time_on_device(images, ways, device, tools.front().model, group);
   }
 }
 
@@ -349,18 +380,21 @@ nlohmann::json to_json(const std::string& condition, std::size_t count, const Gr
     result["ready_core_ms"] = spread_of(group.core_ready).median;
     result["ready_two_cores_ms"] = spread_of(group.two_ready).median;
   }
+  if (!group.device_ready.empty()) result["ready_device_ms"] = spread_of(group.device_ready).median;
   for (const auto& [scene, errors] : group.of_scene) result["scenes"][scene] = to_json(errors);
   return result;
 }
 
 std::string line_of(const std::string& condition, std::size_t count, const Group& group) {
-  char line[160], ready[80] = "";
+  char line[240], ready[80] = "", on_device[40] = "";
   if (!group.core_ready.empty())
     std::snprintf(ready, sizeof ready, "  %5.1f %5.1f", spread_of(group.core_ready).median,
                   spread_of(group.two_ready).median);
-  std::snprintf(line, sizeof line, "%-17s %zu  %6.3f %6.2f  %5.1f  %5.0f%s\n", condition.c_str(),
+  if (!group.device_ready.empty())
+    std::snprintf(on_device, sizeof on_device, " %5.2f", spread_of(group.device_ready).median);
+  std::snprintf(line, sizeof line, "%-17s %zu  %6.3f %6.2f  %5.1f  %5.0f%s%s\n", condition.c_str(),
                 count, 100 * group.all.volume.mean(), 100 * group.all.volume_worst.worst(),
-                group.all.direction.mean(), spread_of(group.microseconds).median, ready);
+                group.all.direction.mean(), spread_of(group.microseconds).median, ready, on_device);
   return line;
 }
 
@@ -376,7 +410,7 @@ Report run_cameras(const SuiteOptions& options) {
   Groups groups;
   const std::vector<CameraScene> scenes = make_scenes();
   for (std::size_t k = 0; k < scenes.size(); ++k) {
-    measure(scenes[k], tools, ways, poses, groups);
+    measure(scenes[k], tools, ways, poses, options.device, groups);
     if (options.progress)
       options.progress(static_cast<double>(k + 1) / static_cast<double>(scenes.size()));
   }
@@ -393,7 +427,7 @@ Report run_cameras(const SuiteOptions& options) {
                           "direction_mean_degrees"};
   report.summary =
       "condition, cameras; volume, % of the tool: mean, worst; direction, degrees; query, us; "
-      "ready, ms of a core, and on two\n";
+      "ready, ms of a core, on two, and on a device\n";
   for (const auto& [key, group] : groups) {
     const auto& [condition, count] = key;
     report.results.push_back(to_json(condition, count, group));

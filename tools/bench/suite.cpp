@@ -23,7 +23,7 @@ struct Suite {
 
 constexpr Suite kSuites[] = {
     {"accuracy", run_accuracy, kAll | kData | kSeed | kOccluded, Place::either},
-    {"cameras", run_cameras},
+    {"cameras", run_cameras, 0, Place::either},
     {"extremes", run_extremes, 0, Place::either},
     {"intervals", run_intervals},
     {"packing", run_packing, kAll | kMeshes},
