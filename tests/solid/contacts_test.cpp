@@ -17,25 +17,14 @@ using synthetic::make_box;
 using synthetic::make_icosphere;
 using synthetic::make_torus;
 using synthetic::make_torus_knot;
+using test::append;
 using test::at;
+using test::turned;
 
 SolidBody body(const Solid& solid) {
   const Enclosure enclosure = enclosure_of(solid);
   return HandleAccess::make<SolidBody>(
       SolidSurface(enclosure.surface ? *enclosure.surface : solid, true));
-}
-
-void append(Solid& solid, const Solid& more, Vec3 by = {}) {
-  const auto first = static_cast<std::uint32_t>(solid.vertices.size());
-  for (const Vec3& v : more.vertices) solid.vertices.push_back(v + by);
-  for (const auto& [a, b, c] : more.triangles)
-    solid.triangles.push_back({first + a, first + b, first + c});
-}
-
-// Turns a solid inside out: the wall of a hollow.
-Solid turned(Solid solid) {
-  for (Triangle& t : solid.triangles) std::swap(t[1], t[2]);
-  return solid;
 }
 
 Overlap overlap_of(const Solid& a, const Solid& b, const Pose& pose, std::uint32_t count = 100) {

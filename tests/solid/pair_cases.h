@@ -1,8 +1,10 @@
 // Solids of the tests of pairs, prepared, and what their truth is made of.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "libvpm/core/pose.h"
 #include "libvpm/mesh/outer_surface.h"
@@ -28,6 +30,19 @@ inline Pose random_pose(std::mt19937_64& random, double half) {
 
 inline Solid moved(Solid solid, const Pose& pose) {
   for (Vec3& v : solid.vertices) v = pose * v;
+  return solid;
+}
+
+// Adds a solid, moved, to another one.
+inline void append(Solid& solid, const Solid& more, Vec3 by = {}) {
+  const auto first = static_cast<std::uint32_t>(solid.vertices.size());
+  for (const Vec3& v : more.vertices) solid.vertices.push_back(v + by);
+  for (const auto& [a, b, c] : more.triangles)
+    solid.triangles.push_back({first + a, first + b, first + c});
+}
+// Turns a solid inside out: the wall of a hollow.
+inline Solid turned(Solid solid) {
+  for (Triangle& t : solid.triangles) std::swap(t[1], t[2]);
   return solid;
 }
 

@@ -111,13 +111,6 @@ Solid as_in_a_file(Solid solid, const Rotation& turn) {
   for (Vec3& v : solid.vertices) v = widen(narrow(turn * v));
   return solid;
 }
-Solid together(Solid solid, const Solid& more, Vec3 by) {
-  const auto first = static_cast<std::uint32_t>(solid.vertices.size());
-  for (const Vec3& v : more.vertices) solid.vertices.push_back(v + by);
-  for (const auto& [a, b, c] : more.triangles)
-    solid.triangles.push_back({first + a, first + b, first + c});
-  return solid;
-}
 
 // Only solids that are convex and have few faces have planes that tell the depth.
 TEST(SolidSurface, KnowsThePlanesOfConvexSolidsWithFewFaces) {
@@ -132,16 +125,15 @@ TEST(SolidSurface, KnowsThePlanesOfConvexSolidsWithFewFaces) {
       EXPECT_LE(found->bytes(), 1000 * found->triangles() + 10000);
     }
   }
-  Solid hollow = cube;
-  Solid wall = synthetic::make_cube(.05);
-  for (Triangle& t : wall.triangles) std::swap(t[1], t[2]);
-  hollow = together(hollow, wall, {});
+  Solid hollow = cube, beside = cube, across = cube;
+  test::append(hollow, test::turned(synthetic::make_cube(.05)));
+  test::append(beside, cube, {.2, 0, 0});
+  test::append(across, cube, {.05, .05, .05});
   Solid dented = parted(cube, 1);
   for (Vec3& v : dented.vertices)
     if (v == Vec3{.05, 0, 0}) v.x -= 1e-4;
-  for (const Solid& solid :
-       {hollow, dented, together(cube, cube, {.2, 0, 0}), together(cube, cube, {.05, .05, .05}),
-        synthetic::make_icosphere(.1, 2), synthetic::make_torus(.4, .1, 8, 4)}) {
+  for (const Solid& solid : {hollow, dented, beside, across, synthetic::make_icosphere(.1, 2),
+                             synthetic::make_torus(.4, .1, 8, 4)}) {
     const auto found = test::surface(solid, true);
     EXPECT_FALSE(found->face_planes()) << solid.triangles.size();
     EXPECT_TRUE(found->has_depth());
