@@ -283,6 +283,10 @@ TEST(FramesOnDevice, OfSeveralCameras) {
       clouds.emplace_back(make_cloud(image, cameras[k], {}));
     }
     const RigBody expected(clouds), found(made), mixed({clouds[0], made[1], made[2]});
+    std::vector<Pose> poses(64, pose_of(0));  // the host's first question, by all its threads
+    std::vector<Result> results(poses.size());
+    on_cpu.run(found, jobs_of(poses), results);
+    expect_equal(on_cpu.run(expected, poses[0]), results.back());
     double most = 0;
     for (int k = 0; k < 6; ++k) {
       const Pose pose{testing::generic_rotation(), {0.05 * std::cos(k), 0.05 * std::sin(k), 0.05}};

@@ -80,7 +80,9 @@ PreparedRig::PreparedRig(std::vector<DepthBody> images)
   const auto is_of_device = [](const DepthBody& image) {
     return image.slot() != nullptr && image.slot()->options().device.is_cuda();
   };
-  if (std::ranges::none_of(images_, is_of_device)) spread_cameras();  // else when the host asks
+  if (std::ranges::any_of(images_, is_of_device)) return;  // the host spreads when it asks
+  for_each_image([](const DepthBody& image) { image.spread_silhouettes(); });
+  spread_cameras();
 }
 
 void PreparedRig::place_cameras() {
@@ -92,7 +94,7 @@ void PreparedRig::place_cameras() {
 
 const std::vector<RigCamera>& PreparedRig::spread_cameras() const {
   std::call_once(spread_->once, [&] {
-    for_each_image([](const DepthBody& image) { image.spread_silhouettes(); });
+    const OneThread alone;  // which takes no other task meanwhile: it might ask for these, too
     spread_->all = cameras_;
     for (std::size_t i = 0; i < images_.size(); ++i)
       spread_->all[i].silhouettes = images_[i].spread_silhouettes().view();
