@@ -118,7 +118,7 @@ struct SmallTriangles {
   std::size_t count;
   const float* vertices;  // four numbers each
   PixelWindow window;
-  float* ranges;          // two numbers per pixel, and room for kSmallAcross pixels more
+  float* ranges;          // two numbers per pixel, and room for kSmallDown rows and kLanes more
   std::uint32_t* others;  // receives the triangles that are not small
 };
 
@@ -130,7 +130,10 @@ std::size_t draw_small(const SmallTriangles& t) {
   const std::size_t stride = 2 * static_cast<std::size_t>(t.window.width());
   const float u0 = static_cast<float>(t.window.u0) - 0.5F,
               v0 = static_cast<float>(t.window.v0) - 0.5F;
-  float only[kSmallAcross][kLanes];  // 0 for as many pixels, then infinite
+  float only[kSmallAcross][kLanes];         // 0 for as many pixels, then infinite
+  float only_rows[kSmallDown][kSmallDown];  // 0 for as many rows, then infinite
+  for (int n = 0; n < kSmallDown; ++n)
+    for (int i = 0; i < kSmallDown; ++i) only_rows[n][i] = i <= n ? 0 : kNone;
   for (int n = 0; n < kSmallAcross; ++n)
     for (int i = 0; i < kLanes; ++i) only[n][i] = i / 2 <= n ? 0 : kNone;
   std::size_t others = 0;
@@ -163,7 +166,8 @@ std::size_t draw_small(const SmallTriangles& t) {
         Floats{far, near, far, near, far, near, far, near} + load<Floats>(only[last - first]);
     float* pixels = t.ranges + static_cast<std::size_t>(first_row) * stride +
                     2 * static_cast<std::size_t>(first);
-    for (int v = first_row; v <= last_row; ++v, pixels += stride) widen_four(pixels, ranges);
+    for (int row = 0; row < kSmallDown; ++row, pixels += stride)  // without branches
+      widen_four(pixels, ranges + only_rows[last_row - first_row][row]);
   }
   return others;
 }
@@ -391,7 +395,8 @@ void SolidImage::draw(const PixelWindow& window) {
   moved_ = 0;
   const std::size_t pixels =
       static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
-  ranges_.assign(pixels + kLanes, DrawnRange{});
+  const std::size_t below = kSmallDown * static_cast<std::size_t>(window.width());
+  ranges_.assign(pixels + below + kLanes, DrawnRange{});
   if (vertices_.empty()) return;
   const std::vector<Triangle>& triangles = solid_->triangles();
   others_.resize(triangles.size());
