@@ -484,6 +484,14 @@ def threads(report):
     return table(["threads, each on a core"] + [head for name in kinds.values() for head in (f"{name}, a second", "of N times one thread's")], rows)
 
 
+def pack_threads(report):
+    one = {r["spheres"]: r for r in reversed(report["results"])}  # with the fewest threads
+    return table(["spheres", "threads, each on a core", "s", "CPU s", "times as fast", "of as many times"],
+                 [[thousands(r["spheres"]), r["threads"], f"{r['seconds']:.1f}", f"{r['cpu_seconds']:.0f}", f"{faster:.1f}",
+                   f"{faster / (r['threads'] / one[r['spheres']]['threads']):.2f}"]
+                  for r in report["results"] for faster in [one[r["spheres"]]["seconds"] / r["seconds"]]])
+
+
 def python(report):
     kinds, ways = {"clear": "poses that touch nothing", "deep": "poses in the surface"}, {"batch": "at once", "singles": "one by one"}
     return table(["what is asked", "C++, µs a pose", "Python, µs a pose", "Python over C++, median (quartiles)", "added, µs a pose"],
@@ -519,7 +527,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
              "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
              "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
-             "packing cost": (packing_cost, "packing"), "packing smooth": (packing_smooth, "packing_smooth"),
+             "packing cost": (packing_cost, "packing"), "packing smooth": (packing_smooth, "packing_smooth"), "packing threads": (pack_threads, "pack_threads"),
              "packing fit": (packing_fit, "packing_fit"),
              "replay": (replay, "replay"), "replay clutter": (replay_clutter, "replay_clutter"),
              "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
