@@ -12,34 +12,10 @@
 #include "libvpm/core/exact_pose.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/solid/box_pairs.h"
+#include "libvpm/solid/solid_pair.h"
 
 namespace vpm {
 namespace {
-
-// Returns how far faces that are flush may come to lie inside each other, m: both surfaces are
-// moved by the jitter, and one by a small motion if the boundary does not close at once (four
-// jitters in all), and places far from the origin are rounded.
-double depth_of_touch(double reach, double distance_from_origin) {
-  constexpr double kMoves = 4, kRounding = 0x1p-50;
-  return kMoves * SolidSurface::kJitter * reach + kRounding * (distance_from_origin + reach);
-}
-
-// A part where it stands.
-struct PlacedPart {
-  const SolidSurface* surface = nullptr;
-  double area = 0;  // of the surface, m^2
-  double far = 0;   // distance of the solid from its mesh's or the world's origin, m; the larger
-  Box box;          // in the world, with room for the jitter
-};
-
-double area_of(const SolidSurface& surface) {
-  double twice = 0;
-  for (const auto& [a, b, c] : surface.tree().triangles()) {
-    const std::vector<Vec3>& v = surface.tree().vertices();
-    twice += norm(cross(v[b] - v[a], v[c] - v[a]));
-  }
-  return twice / 2;
-}
 
 // Returns the pose of each part, exact. Throws Error(refused) that names the part.
 std::vector<Pose> poses_of(std::span<const Part> parts) {
@@ -53,36 +29,26 @@ std::vector<Pose> poses_of(std::span<const Part> parts) {
   return poses;
 }
 
-PlacedPart placed(const SolidSurface& surface, const Pose& pose) {
+// Returns the box of a solid in the world, with room for what flush faces may have inside of it.
+Box box_of(const SolidSurface& surface, const Pose& pose) {
   const Vec3 center = pose * surface.center_of_mass();
-  PlacedPart result{&surface, 0, std::max(norm(center), norm(surface.center_of_mass())), {}};
-  for (const Vec3& v : surface.tree().vertices()) result.box.add(pose.rotation * v + center);
-  const double room = depth_of_touch(surface.reach(), result.far);
-  result.box.low = result.box.low - Vec3{room, room, room};
-  result.box.high = result.box.high + Vec3{room, room, room};
-  return result;
+  const double far = std::max(norm(center), norm(surface.center_of_mass())),
+               room = depth_of_touch(surface.reach(), far);
+  Box box;
+  for (const Vec3& v : surface.tree().vertices()) box.add(pose.rotation * v + center);
+  box.low = box.low - Vec3{room, room, room};
+  box.high = box.high + Vec3{room, room, room};
+  return box;
 }
 
-std::vector<PlacedPart> placed(std::span<const Part> parts) {
+std::vector<Box> boxes_of(std::span<const Part> parts) {
   const std::vector<Pose> poses = poses_of(parts);
-  std::vector<PlacedPart> result(parts.size());
+  std::vector<Box> boxes(parts.size());
   parallel_for(parts.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      result[k] = placed(*HandleAccess::shared(parts[k].solid), poses[k]);
+      boxes[k] = box_of(*HandleAccess::shared(parts[k].solid), poses[k]);
   });
-  std::map<const SolidSurface*, double> areas;
-  for (PlacedPart& part : result) {
-    const auto [at, is_new] = areas.try_emplace(part.surface, 0);
-    if (is_new) at->second = area_of(*part.surface);
-    part.area = at->second;
-  }
-  return result;
-}
-
-// Returns the volume that two parts may seem to share though they only touch, m^3.
-double volume_of_touch(const PlacedPart& a, const PlacedPart& b) {
-  const double reach = std::max(a.surface->reach(), b.surface->reach());
-  return depth_of_touch(reach, std::max(a.far, b.far)) * std::min(a.area, b.area);
+  return boxes;
 }
 
 // Throws as a query does of the options, and of a part that was made without what forces need.
@@ -129,13 +95,13 @@ Overlap overlap_of(const Part& a, const Part& b, const std::optional<SharedSolid
 }
 
 // Returns the pair with what its parts share, or with the reason why that cannot be told; nothing
-// if the parts share no more than `volume_of_touch`, m^3, so that they may only touch.
+// if the parts share nothing.
 std::optional<OverlappingPair> measured(std::span<const Part> parts, const BoxPair& at,
-                                        double volume_of_touch, const OverlapOptions& options,
+                                        const OverlapOptions& options,
                                         const std::optional<SharedSolid>& told) {
   try {
     const Overlap shared = overlap_of(parts[at.first], parts[at.second], told, options);
-    if (shared.volume <= volume_of_touch) return std::nullopt;
+    if (shared.volume == 0) return std::nullopt;
     return OverlappingPair{at.first, at.second, shared, {}};
   } catch (const Error& error) {
     return OverlappingPair{at.first, at.second, {}, error.what()};
@@ -147,19 +113,11 @@ std::optional<OverlappingPair> measured(std::span<const Part> parts, const BoxPa
 std::vector<OverlappingPair> overlapping_pairs(std::span<const Part> parts,
                                                const OverlapOptions& options) {
   check(parts, options);
-  const std::vector<PlacedPart> placed_parts = placed(parts);
-  std::vector<Box> boxes;
-  for (const PlacedPart& part : placed_parts) boxes.push_back(part.box);
-  const std::vector<BoxPair> near = boxes_that_meet(boxes);
+  const std::vector<BoxPair> near = boxes_that_meet(boxes_of(parts));
   const auto told = told_by_device(parts, near, options);
   std::vector<std::optional<OverlappingPair>> found(near.size());
   parallel_for(near.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [first, second] = near[k];
-      found[k] =
-          measured(parts, near[k], volume_of_touch(placed_parts[first], placed_parts[second]),
-                   options, told[k]);
-    }
+    for (std::size_t k = begin; k < end; ++k) found[k] = measured(parts, near[k], options, told[k]);
   });
   std::vector<OverlappingPair> pairs;
   for (std::optional<OverlappingPair>& pair : found)

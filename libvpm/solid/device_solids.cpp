@@ -10,10 +10,12 @@ namespace {
 
 constexpr std::size_t kJobsAtOnce = 32768, kJobsPerTask = 256;
 
-// Returns what a device's sums mean, if they hold and close.
+// Returns what a device's sums mean, if they hold and close, and if they tell more than that the
+// solids may only touch.
 std::optional<SharedSolid> shared_of(const PairAnswer& answer, const Pose& relative,
-                                     const OrderedPair& pair) {
+                                     const OrderedPair& pair, const OrderedPair::Place& place) {
   if (answer.has_room == 0 || answer.undecided > 0) return std::nullopt;
+  if (pair.unlikeness() > SolidPair::kMostUnlike) return std::nullopt;
   const double unit = unit_for(pair.first().reach(), pair.second().reach());
   std::array<InnerSurface, 2> inner;
   for (std::size_t role = 0; role < 2; ++role)
@@ -22,6 +24,8 @@ std::optional<SharedSolid> shared_of(const PairAnswer& answer, const Pose& relat
   const double gap = pair.closure(inner);
   if (!(gap <= SolidPair::kMaxClosure)) return std::nullopt;
   SharedSolid shared = pair.shared_of(inner);
+  const double area = std::max(pair.first().area(), pair.second().area());
+  if (shared.volume > 0 && shared.volume <= pair.volume_of_touch(area, place)) return std::nullopt;
   shared.closure = gap, shared.attempts = 1;
   return shared;
 }
@@ -77,7 +81,7 @@ void DeviceSolids::run_part(std::span<const SolidJob> jobs, Answers answers) {
       const auto& [pair, place] = asked[k];
       if (!pair->may_meet(place))
         answers[k].emplace();
-      else if (auto shared = shared_of(sums[k], given[k].pose, *pair))
+      else if (auto shared = shared_of(sums[k], given[k].pose, *pair, place))
         answers[k] = OrderedPair::in_world(std::move(*shared), place);
     }
   });

@@ -26,7 +26,8 @@ class DeviceSolids {
   DeviceSolids(const Device& device, std::vector<std::shared_ptr<const SolidSurface>> solids);
 
   // Returns what SolidPair::measure() returns for each job, without force and contacts; nothing
-  // where the host must measure: what does not close at the first attempt, or lists too much.
+  // where the host must measure: what does not close at the first attempt, lists too much, or is so
+  // little that the solids may only touch.
   std::vector<std::optional<SharedSolid>> run(std::span<const SolidJob> jobs);
 
  private:

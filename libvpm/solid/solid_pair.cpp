@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -45,7 +46,21 @@ Pose about_center(const Pose& pose, const SolidSurface& solid) {
   return {pose.rotation, pose * solid.center_of_mass()};
 }
 
+// Returns the cure where solids are so unlike in size that rounding is to blame.
+std::string to_cut_down(double unlikeness) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "one solid is %.3g times as large as the other: cut it down to what is near",
+                unlikeness);
+  return text;
+}
+
 }  // namespace
+
+double depth_of_touch(double reach, double distance_from_origin) {
+  constexpr double kMoves = 4, kRounding = 0x1p-50;
+  return kMoves * SolidSurface::kJitter * reach + kRounding * (distance_from_origin + reach);
+}
 
 OrderedPair::OrderedPair(std::shared_ptr<const SolidSurface> a,
                          std::shared_ptr<const SolidSurface> b)
@@ -73,6 +88,35 @@ double OrderedPair::closure(const std::array<InnerSurface, 2>& inner) const {
   all.add(inner[1].moments);
   const double reach = std::min(first_->reach(), second_->reach());
   return std::max(norm(all.area) / (reach * reach), norm(all.turn()) / (reach * reach * reach));
+}
+
+double OrderedPair::unlikeness() const {
+  const auto [less, more] = std::minmax({first_->reach(), second_->reach()});
+  return more / less;
+}
+
+void OrderedPair::refuse_unclosed(double gap) const {
+  constexpr double kRounds = 100;  // so unlike solids may miss to close by rounding alone
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the boundary of what the two solids share does not close: its area vectors miss by "
+      "%.1e of the smaller reach squared",
+      gap);
+  refuse(text, {},
+         unlikeness() > kRounds
+             ? to_cut_down(unlikeness())
+             : "check both meshes for slits and folds; one that is repaired by voxels closes");
+}
+
+double OrderedPair::volume_of_touch(double area, const Place& place) const {
+  double far = 0;
+  for (const Vec3 center : {place.first.translation, place.first * place.relative.translation,
+                            first_->center_of_mass(), second_->center_of_mass()})
+    far = std::max(far, norm(center));
+  const auto [less, more] = std::minmax({first_->reach(), second_->reach()});
+  constexpr double kRounding = 0x1p-52;
+  return depth_of_touch(more, far) * area + kRounding * more * more * less;
 }
 
 SharedSolid OrderedPair::shared_of(const std::array<InnerSurface, 2>& inner) const {
@@ -142,20 +186,18 @@ SharedSolid SolidPair::closed(const OrderedPair::Place& place, bool with_force,
   for (int attempt = 0; attempt < OrderedPair::kAttempts; ++attempt) {
     const SurfacePairSums found =
         surfaces_.run(pair_.moved(place, attempt), with_force, with_contacts);
+    if (pair_.unlikeness() > kMostUnlike && found.crossings + found.whole > 0)
+      refuse("doubles do not tell what solids of so unlike sizes share", {},
+             to_cut_down(pair_.unlikeness()));
     const double gap = pair_.closure(found.inner);
     worst = std::max(worst, gap);
     if (found.undecided > 0 || !(gap <= kMaxClosure)) continue;
     SharedSolid shared = pair_.shared_of(found.inner);
+    if (shared.volume <= pair_.volume_of_touch(found.area, place)) shared = {};
     shared.closure = gap, shared.attempts = attempt + 1;
     return shared;
   }
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "the boundary of what the two solids share does not close: its area vectors miss by "
-      "%.1e of the smaller reach squared",
-      worst);
-  refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
+  pair_.refuse_unclosed(worst);
 }
 
 SharedSolid SolidPair::measure(const Pose& pose_a, const Pose& pose_b, bool with_force,

@@ -44,6 +44,11 @@ struct SharedSolid {
   Vec3 torque_about(Vec3 x) const { return torque + cross(centroid - x, force); }
 };
 
+// Returns how far faces that are flush may come to lie inside each other, m, where the larger reach
+// is so long and the places so far from an origin: both surfaces are moved by the jitter, and one
+// by a small motion if the boundary does not close at once, and places are rounded.
+double depth_of_touch(double reach, double distance_from_origin);
+
 // Two solids in the one order in which a pair is computed, and what follows from sums over their
 // surfaces. Immutable.
 class OrderedPair {
@@ -70,6 +75,13 @@ class OrderedPair {
   Pose moved(const Place& place, int attempt) const;
   // Returns how far sums over both surfaces are from closed, as SharedSolid::closure.
   double closure(const std::array<InnerSurface, 2>& inner) const;
+  // Returns how many times as large as the other the larger solid is.
+  double unlikeness() const;
+  // Throws Error(refused) of sums that miss to close by so much.
+  [[noreturn]] void refuse_unclosed(double gap) const;
+  // Returns the volume that the solids may seem to share though they only touch, m^3, where the
+  // area of one inside the other is so large: a layer, and the rounding of parts of triangles.
+  double volume_of_touch(double area, const Place& place) const;
   // Returns what the parts of the two surfaces enclose, in the first's frame, with the torque about
   // the centroid. 0 without volume.
   SharedSolid shared_of(const std::array<InnerSurface, 2>& inner) const;
@@ -91,13 +103,18 @@ class SolidPair {
   // Measures at poses that map the surfaces' meshes to the world; both must be rigid. a and b
   // swapped give the same bits, with signs of area, turn, force and torque turned, since a pair is
   // computed in one order. Leaves force and torque 0 without `with_force`, which needs surfaces
-  // with depth. Lists `contacts` contacts, and the sum of all others; none are found for 0. Throws
-  // Error(refused) where no attempt closes.
+  // with depth. Solids that only touch share nothing: what is no thicker on average than
+  // depth_of_touch(), or of the size of rounding. Lists `contacts` contacts, and the sum of all
+  // others; none are found for 0. Throws Error(refused) where no attempt closes, and where solids
+  // more unlike than kMostUnlike share something.
   SharedSolid measure(const Pose& pose_a, const Pose& pose_b, bool with_force = true,
                       std::uint32_t contacts = 0);
 
   // Largest SharedSolid::closure that is given.
   static constexpr double kMaxClosure = 1e-8;
+  // Largest reach of one solid in reaches of the other at which sums in units of the larger resolve
+  // the smaller, to a millionth of its volume.
+  static constexpr double kMostUnlike = 0x1p13;
 
  private:
   SharedSolid closed(const OrderedPair::Place& place, bool with_force, bool with_contacts);

@@ -66,6 +66,10 @@ SolidSurface::SolidSurface(const Solid& boundary, bool with_depth) {
   tree_ = std::make_unique<SurfaceTree>(surface.vertices, surface.triangles, reach_, with_depth);
   inside_ = std::make_unique<InsideIndex>(tree_->vertices(), tree_->triangles());
   volume_ = tree_->moments(0).flux() / 3;
+  for (std::uint32_t t = 0; t < triangles(); ++t) {
+    const auto [a, b, c] = tree_->corners(t);
+    area_ += 0.5 * norm(cross(b - a, c - a));
+  }
   if (with_depth) planes_ = FacePlanes::of(tree_->vertices(), tree_->triangles(), reach_);
   if (with_depth && !planes_) prepare_grid();
 }

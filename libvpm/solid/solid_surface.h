@@ -30,6 +30,7 @@ class SolidSurface {
   static constexpr double kJitter = 0x1p-36;
 
   double volume() const { return volume_; }           // m^3
+  double area() const { return area_; }               // of the surface, m^2
   Vec3 center_of_mass() const { return center_; }     // in the mesh's frame, m
   double reach() const { return reach_; }             // largest distance of a vertex from it, m
   const SurfaceTree& tree() const { return *tree_; }  // of the triangles
@@ -61,7 +62,7 @@ class SolidSurface {
  private:
   void prepare_grid();
 
-  double volume_ = 0, reach_ = 0;
+  double volume_ = 0, area_ = 0, reach_ = 0;
   Vec3 center_;
   std::string hash_;
   std::unique_ptr<SurfaceTree> tree_;

@@ -1,5 +1,6 @@
 #include "libvpm/solid/surface_pair.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -51,6 +52,7 @@ SurfacePairSums SurfacePair::run(const Pose& pose, bool with_force, bool with_co
     add_crossed(role);
     add_whole(role);
     sums_.inner[role].moments = moments_of(roles_[role], roles_[role].sums);
+    sums_.area = std::max(sums_.area, unit_ * unit_ * roles_[role].sums.area.real());
   }
   if (with_force_) {
     add_forces();
@@ -269,8 +271,11 @@ void SurfacePair::add_whole(std::size_t which) {
         continue;
       }
       if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
-      role.sums.whole.add(scaled(tree.moments(child), per_unit_));
-      if (with_force_) role.sums.area.add(per_unit_ * per_unit_ * tree.patches()[child].area);
+      const SurfaceMoments moments = tree.moments(child);
+      const bool has_patches = !tree.patches().empty();
+      const double area = has_patches ? tree.patches()[child].area : norm(moments.area);
+      role.sums.whole.add(scaled(moments, per_unit_));
+      role.sums.area.add(per_unit_ * per_unit_ * area);
       note_whole(which, child);
     }
   }
@@ -295,6 +300,7 @@ void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) 
 
 // Notes what lies inside as a whole, for its force and its contact.
 void SurfacePair::note_whole(std::size_t which, std::uint32_t child) {
+  ++sums_.whole;
   if (with_force_ || (with_contacts_ && !is_one_contact_))
     whole_pieces_.push_back({static_cast<std::uint32_t>(which), child, kNone});
 }

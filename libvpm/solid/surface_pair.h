@@ -48,7 +48,11 @@ struct SurfaceContact {
 
 struct SurfacePairSums {
   std::array<InnerSurface, 2> inner;
+  // Area of the one surface inside the other, or of the other inside the one, m^2; the larger. Up to
+  // that, of surfaces without depth.
+  double area = 0;
   std::size_t undecided = 0;  // pairs of triangles whose signs contradict each other
+  std::size_t whole = 0;      // pieces of surface that nothing crosses and that lie inside
   // Counts for tests and benchmarks.
   std::size_t candidates = 0, crossings = 0, depths = 0;
 };
@@ -84,7 +88,7 @@ class SurfacePair {
   struct RoleSums {
     WideMoments cut, whole;
     WideWrench cut_wrench, whole_wrench;  // times wrench_scale_
-    WideSum area;                         // for forces
+    WideSum area;
     void subtract(const RoleSums& o);
   };
   // Part of a surface whose depth is taken for linear, and its force; in the first's frame and the

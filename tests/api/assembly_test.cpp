@@ -107,6 +107,15 @@ TEST(Assembly, FindsPartsInsideOthers) {
   EXPECT_NEAR(found[2].overlap.volume, 1e-9, 1e-15);
 }
 
+// Two cubes that share a cube of a micrometre at their corners.
+TEST(Assembly, FindsCornersThatMeet) {
+  const double apart = kEdge - 1e-6;
+  const auto found = vpm::overlapping_pairs(
+      std::vector<Part>{{edge_cube(), {}}, {edge_cube(), {{}, {apart, apart, apart}}}});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].overlap.volume, 1e-18, 1e-20);
+}
+
 // Cubes at random places, some of which share as little as 1e-9 m^3.
 std::vector<Part> scattered(std::size_t count) {
   std::mt19937_64 random(3);

@@ -252,9 +252,9 @@ struct OverlappingPair {
 };
 
 // Returns the pairs of parts that share volume, in ascending order of `first`, then `second`, with
-// what overlap() returns of each. Parts that only touch are no pair: a volume is left out if faces
-// that are flush may have it, which are moved by 2^-34 of the larger radius and by the rounding of
-// places far from the origin. Where the boundary of what two parts share does not close, their pair
+// what overlap() returns of each. Parts that only touch are no pair: what is no thicker on average
+// than flush faces may be, 2^-34 of the larger radius and the rounding of places far from the
+// origin, is nothing. Where the boundary of what two parts share does not close, their pair
 // has the refusal that overlap() throws, so that it hides no others. Takes time of the contacts'
 // sizes, beside n log n of the boxes about n parts; uses several threads, whose number changes no
 // bit. Thread-safe. Throws as OverlapQuery does for options and bodies, and Error(refused), naming
