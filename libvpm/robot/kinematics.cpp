@@ -11,6 +11,9 @@ namespace {
 // Limits in files are rounded, and values that were clamped to them may be, too.
 constexpr double kLimitRounding = 1e-9;
 
+// Largest value of a joint, rad or m: that of places; an angle as large is not known to a turn.
+constexpr double kMostValue = 0x1p40;
+
 // Returns the value of every joint, by its number; 0 of fixed ones.
 std::vector<double> all_values(const Robot& robot, std::span<const double> values) {
   if (values.size() != robot.movable.size())
@@ -19,9 +22,10 @@ std::vector<double> all_values(const Robot& robot, std::span<const double> value
                                                  " movable joints");
   std::vector<double> all(robot.joints.size(), 0);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!std::isfinite(values[k]))
-      throw Error(ErrorKind::invalid_argument,
-                  "the value of joint '" + robot.joints[robot.movable[k]].name + "' is not finite");
+    if (!(std::abs(values[k]) <= kMostValue))
+      throw Error(ErrorKind::invalid_argument, "the value of joint '" +
+                                                   robot.joints[robot.movable[k]].name +
+                                                   "' is not finite, or beyond 2^40");
     all[robot.movable[k]] = values[k];
   }
   for (std::size_t k = 0; k < all.size(); ++k) {

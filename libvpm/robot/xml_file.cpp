@@ -20,8 +20,10 @@ XmlFile::XmlFile(const std::string& path, const std::string& text, const char* r
                  const char* what) {
   document_.Parse(text.c_str());
   if (document_.Error())
-    refuse("line " + std::to_string(document_.ErrorRow()) + ": " + document_.ErrorDesc(), path,
-           std::string("give ") + what);
+    refuse(document_.ErrorRow() == 0
+               ? "this is no XML"
+               : "this is no XML from line " + std::to_string(document_.ErrorRow()) + " on",
+           path, std::string("give ") + what);
   const TiXmlElement* const element = document_.RootElement();
   if (element == nullptr || element->ValueStr() != root)
     refuse(std::string("its root is ") +

@@ -66,7 +66,7 @@ double fraction_from_text(const std::string& text, const std::string& option) {
   const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
   if (fault != std::errc() || (!unit.empty() && unit != "%") || !(value > 0)) {
     throw Error(ErrorKind::invalid_argument,
-                option + " " + text + ": give a share of the tool's volume like 0.5% or 0.005");
+                option + " " + text + ": give a fraction of the tool's volume like 0.5% or 0.005");
   }
   return unit.empty() ? value : value / 100;
 }

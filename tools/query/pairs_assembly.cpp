@@ -175,11 +175,14 @@ Assembly described(const std::string& path) {
   return assembly;
 }
 
-// True if the file of a folder is a part: hidden files are none.
+// True if the file of a folder is a part: hidden files are none. So is a link that leads nowhere,
+// which nobody can read.
 bool is_part(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
   std::error_code fault;
-  if (name.starts_with('.') || !entry.is_regular_file(fault)) return false;
+  const fs::file_type type = entry.status(fault).type();
+  const bool may_be_read = type == fs::file_type::regular || type == fs::file_type::not_found;
+  if (name.starts_with('.') || !may_be_read) return false;
   return has_mesh_ending(name) || file::in_lower_case(entry.path().extension().string()) == ".vpmg";
 }
 

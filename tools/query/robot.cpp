@@ -284,9 +284,9 @@ class RobotQueries {
     output_.finish();
     if (scene_) scene_->warn_at_end();
     if (setup_.view) setup_.view->write(arguments_.view);
-    setup_.program.note(std::to_string(asked.size()) + " configurations, at " +
-                        std::to_string(shared_) + " of which links share volume; " +
-                        std::to_string(robot_.pairs()) + " pairs of links were asked");
+    setup_.program.note(
+        "configurations: " + std::to_string(asked.size()) + ", at " + std::to_string(shared_) +
+        " of which links share volume; pairs of links: " + std::to_string(robot_.pairs()));
   }
 
   // True if a line is above --fail-above.

@@ -46,8 +46,8 @@ class LineReader {
     if (line.size() != robot_.movable.size()) {
       std::vector<std::string> order;
       for (const std::size_t joint : robot_.movable) order.push_back(names_[joint]);
-      refuse("there are " + std::to_string(line.size()) + " values for " +
-                 std::to_string(order.size()) + " movable joints",
+      refuse("the number of values is " + std::to_string(line.size()) +
+                 ", that of movable joints " + std::to_string(order.size()),
              where, "give one for each of " + file::listed(order));
     }
     Configuration configuration;

@@ -74,7 +74,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 0.00
 2> vpm-query: error: no level of the tool model keeps an error of 0.0001 %; the best has * %: allow as much, or pack more spheres (glob)
 [1]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5%%
-2> vpm-query: error: --max-error 5%%: give a share of the tool's volume like 0.5% or 0.005
+2> vpm-query: error: --max-error 5%%: give a fraction of the tool's volume like 0.5% or 0.005
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 120%
 2> vpm-query: error: the error must lie between 0 and 1 (0 % and 100 %)

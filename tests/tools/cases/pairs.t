@@ -32,6 +32,17 @@ $ vpm-query --pairs parts --fail-above 0.009 --quiet | python3 near.py
 [1]
 $ rm parts/open.off; vpm-query --pairs parts --fail-above 0.009 | sed 's/"above":false,//' | cmp - pairs.jsonl
 2> vpm-query: note: 2 parts, 1 pair shares volume
+$ ln -s gone.off parts/link.off; vpm-query --pairs parts | cmp - pairs.jsonl; rm parts/link.off
+2> vpm-query: error: part 'link.off' is left out: cannot read parts/link.off: No such file or directory
+2> vpm-query: note: 2 parts, 1 pair shares volume
+2> vpm-query: error: 1 of 3 parts is left out for what is said above
+
+# Parts that touch share nothing, as a tool and solids do; a corner of .08 mm is told.
+$ printf '%s\n' '{"unit":"m","parts":[{"mesh":"cube.off","name":"a"},{"mesh":"cube.off","name":"b","pose":[0.2,0.05,0.1,0,0,0,1]},{"mesh":"cube.off","name":"c","pose":[-0.19992,-0.19992,-0.19992,0,0,0,1]}]}' > touching.json && vpm-query --pairs touching.json --fail-above 0 --quiet | python3 near.py
+['a', 'c', 5.12e-13, 6.4e-11, [-0.1, -0.1, -0.1], None, True, 'm']
+[10]
+$ vpm-pack cube.off -o touch.vpmp --spheres 10 --quiet && vpm-graph touch.vpmp -o touch.vpmg && vpm-query --tool touch.vpmg --solid cube.off --pose 0.2,0.05,0.1,0,0,0,1 --collides --fail-above 0 | grep -o '"collides.*'
+"collides":"no","above":false}
 $ vpm-query --pairs parts --unit mm | python3 near.py
 ['again.off', 'cube.off', 0.008, 1.0, [0.0, 0.0, 0.0], None, None, 'mm']
 2> vpm-query: warning: parts/again.off: the mesh is 0.0002 m across: if it was scaled to metres twice, give another --unit

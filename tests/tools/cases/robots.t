@@ -7,7 +7,7 @@ $ printf '%s\n' '{"reach":0.16,"id":"touch"}' '[0.15,-1.5707963267948966]' '[-0.
 $ vpm-query --urdf arm.urdf --joints joints.jsonl --cloud wall.vpmc -o found.jsonl && $VALIDATE robot-result found.jsonl
 2> vpm-query: note: joints that a line does not name are at 0: turn
 2> vpm-query: warning: configuration 3: joint 'turn' is beyond its limits, -2 to 2; are values in radians and metres?
-2> vpm-query: note: 4 configurations, at 1 of which links share volume; 1 pairs of links were asked
+2> vpm-query: note: configurations: 4, at 1 of which links share volume; pairs of links: 1
 $ python3 -c 'import json; [print(l.get("id"), [round(p["volume"] * 1e6) for p in l["links"]], round(l["volume"] * 1e6), [round(l["force"][2] * 1e6)], [round(x, 3) + 0 for x in l["links"][2]["pose"][:3]], [(s["links"], round(s["volume"] * 1e6, 3)) for s in l["self"]], l.get("beyond_limits")) for l in map(json.loads, open("found.jsonl"))]'
 touch [0, 200, 200] 401 [-401] [0.0, 0.0, 0.96] [] None
 None [0, 0, 1500] 1500 [-1500] [0.0, 0.0, 0.95] [] None
@@ -58,12 +58,17 @@ $ (ulimit -f 8; bash ask.sh -o other.jsonl 2>&-); sed -i "s/0[.]1/0.2/" link.off
 [2]
 
 # Lines that are none, and robots that are none, are named with the cure.
-$ for l in '[1]' '{"reech":1}' '{"reach":"far"}' '7' '[1,'; do echo "$l" | vpm-query --urdf arm.urdf --joints -; done
-2> vpm-query: error: standard input, line 1: there are 1 values for 2 movable joints; give one for each of reach, turn
+$ for l in '[1]' '{"reech":1}' '{"reach":"far"}' '7' '[1,' '[1,1e308]'; do echo "$l" | vpm-query --urdf arm.urdf --joints -; done
+2> vpm-query: error: standard input, line 1: the number of values is 1, that of movable joints 2; give one for each of reach, turn
 2> vpm-query: error: standard input, line 1: the robot has no joint 'reech'; is 'reach' meant?
 2> vpm-query: error: standard input, line 1: the value of joint 'reach' is no number; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
 2> vpm-query: error: standard input, line 1: it is no object and no array; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
 2> vpm-query: error: standard input, line 1: it is not JSON: it cannot be read from line 1 on; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
+2> vpm-query: error: the value of joint 'turn' is not finite, or beyond 2^40
+[2]
+$ echo nothing > none.urdf; echo '<robot><link' > half.urdf; for f in none half; do vpm-query --urdf $f.urdf --joints joints.jsonl; done
+2> vpm-query: error: none.urdf: this is no XML; give a URDF file
+2> vpm-query: error: half.urdf: this is no XML from line 1 on; give a URDF file
 [1]
 $ sed 's/".2 .2 .2"/"-1 1 1"/' arm.urdf > bad.urdf; vpm-pack --urdf bad.urdf --export x.yml; sed 's/<box size=".2 .2 .2"/<mesh filename="package:\/\/parts\/m.stl"/' arm.urdf > lost.urdf; vpm-pack --urdf lost.urdf --export x.yml
 2> vpm-pack: error: bad.urdf: a size of link 'base' is not positive; sizes are metres above 0
