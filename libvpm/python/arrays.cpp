@@ -53,8 +53,14 @@ std::vector<Pose> poses_of(const Numbers& numbers) {
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(count));
   const py::ssize_t of_each = count > 0 ? numbers.size() / count : 0;
-  for (py::ssize_t k = 0; k < count; ++k)
-    poses.push_back(pose_at(numbers, 1, numbers.data() + k * of_each));
+  for (py::ssize_t k = 0; k < count; ++k) try {
+      poses.push_back(pose_at(numbers, 1, numbers.data() + k * of_each));
+    } catch (const Error& error) {
+      if (error.where().empty()) throw;  // of the array
+      throw Error(error.kind(), error.problem(),
+                  "pose " + std::to_string(k) + " of " + std::to_string(count) + ", from 0",
+                  error.hint());
+    }
   return poses;
 }
 

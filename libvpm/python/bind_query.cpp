@@ -130,6 +130,12 @@ constexpr const char* kUnseenLimitIs =
     "unseen_limit: part of the tool that may be unseen or out of view where the answer is no, in "
     "[0, 1].";
 
+// Returns the limit that an answer is asked with. Rejects one that is none.
+double checked_limit(double unseen_limit) {
+  if (!(unseen_limit >= 0 && unseen_limit <= 1)) reject("`unseen_limit` must lie in [0, 1]");
+  return unseen_limit;
+}
+
 void bind_results(py::module_& module, const py::object& collides_kind) {
   py::class_<Result>(module, "Result", "Answer of a query at one pose.")
       .def_readonly("volume", &Result::volume, "Volume of the tool inside the scene's solid, m^3.")
@@ -170,7 +176,7 @@ void bind_results(py::module_& module, const py::object& collides_kind) {
       .def(
           "collides",
           [collides_kind](const Result& result, double unseen_limit) {
-            return collides_kind(static_cast<int>(collides(result, unseen_limit)));
+            return collides_kind(static_cast<int>(collides(result, checked_limit(unseen_limit))));
           },
           py::arg("unseen_limit") = kUnseenLimit,
           (std::string("Returns what the answer says as vpm.Collides.\n\n") + kUnseenLimitIs)
@@ -226,8 +232,9 @@ void bind_results(py::module_& module, const py::object& collides_kind) {
           [](const Results& results, double unseen_limit) {
             py::array_t<std::uint8_t> found(static_cast<py::ssize_t>(results.answers.size()));
             std::uint8_t* out = found.mutable_data();
+            const double limit = checked_limit(unseen_limit);
             for (const Result& result : results.answers)
-              *out++ = static_cast<std::uint8_t>(collides(result, unseen_limit));
+              *out++ = static_cast<std::uint8_t>(collides(result, limit));
             return found;
           },
           py::arg("unseen_limit") = kUnseenLimit,

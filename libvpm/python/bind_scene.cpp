@@ -52,7 +52,8 @@ ImportParameters parameters_of(const py::kwargs& given) {
   return made;
 }
 
-constexpr const char* kImportArguments =
+// The arguments of a depth image, in memory or in a file,
+constexpr const char* kImageArguments =
     "intrinsics: fx, fy, cx, cy in pixels, or a matrix (3, 3); needed for depth images.\n"
     "camera_pose: pose of the camera, or of the points' frame, in the world.\n"
     "axes: \"opencv\" (x right, y down, z forward), \"opengl\" or \"ros\".\n"
@@ -60,11 +61,16 @@ constexpr const char* kImportArguments =
     "decode: \"swapped\", \"big-endian\", \"rotated\", \"disparity\", or several with commas.\n"
     "invalid: values that mean \"not measured\"; usual_invalid: 0, 65535 and the like do too.\n"
     "range: (nearest, farthest), m; other depths count as not measured.\n"
-    "along_ray: values are distances along the ray. channel: of an OpenEXR image.\n"
+    "along_ray: values are distances along the ray.\n"
+    "method, window, edge_gate: how normals are estimated (\"inverse-depth\" or \"pca\").\n";
+// those of a file alone,
+constexpr const char* kFileArguments =
+    "channel: of an OpenEXR image.\n"
     "flip: turns the normals of points without camera. orient: turns those that face away from a "
-    "place, \"x,y,z\", or with \"neighbours\" those that disagree with others.\n"
-    "method, window, edge_gate: how normals are estimated (\"inverse-depth\" or \"pca\").\n\n"
-    "Warnings are vpm.SetupWarning, notes go to the logger \"vpm\". Raises RefusedError, naming "
+    "place, \"x,y,z\", or with \"neighbours\" those that disagree with others.\n";
+// and what both do beside.
+constexpr const char* kImportSays =
+    "\nWarnings are vpm.SetupWarning, notes go to the logger \"vpm\". Raises RefusedError, naming "
     "the defect, and ArgumentError for arguments out of range. Thread-safe.";
 
 template <class Value>
@@ -148,7 +154,7 @@ void bind_cloud(py::module_& module) {
       py::arg("path"),
       (std::string("Returns the cloud of a PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD or PLY "
                    "file.\n\n") +
-       kImportArguments)
+       kImageArguments + kFileArguments + kImportSays)
           .c_str());
   module.def(
       "import_depth",
@@ -158,7 +164,7 @@ void bind_cloud(py::module_& module) {
       py::arg("image"),
       (std::string("Returns the cloud of a depth image in memory: an array (height, width) of "
                    "uint16 counts or of floats, m, along the optical axis.\n\n") +
-       kImportArguments)
+       kImageArguments + kImportSays)
           .c_str());
 }
 

@@ -1,4 +1,5 @@
 """Queries: answers at poses and in batches, collisions, several threads, and what is doubtful of a setup."""
+import functools
 import threading
 
 import numpy as np
@@ -78,12 +79,22 @@ def test_only_what_was_seen_to_be_free_is_no_collision(tool, scene):
     assert not query.collides(scene, poses[0]) and query.collides(scene, poses[2])
     assert query.collides(scene, poses[2], unseen_limit=1) is vpm.Collides.no
     assert list(query.run_batch(scene, poses).collides(1)) == [0, 1, 0]
-    with pytest.raises(vpm.ArgumentError):
-        query.collides(scene, poses[0], unseen_limit=1.5)
+    for limit in (1.5, -0.1, np.nan):
+        for ask in (functools.partial(query.collides, scene, poses[0]), query.run(scene, poses[0]).collides,
+                    query.run_batch(scene, poses).collides):
+            with pytest.raises(vpm.ArgumentError):
+                ask(unseen_limit=limit)
     at_level = vpm.LevelQuery(tool, scene, poses[0], max_error=0.5).another()
     assert [at_level.collides(scene, pose) for pose in poses] == expected
     solid = vpm.Scene([vpm.Body(vpm.SolidBody(tool), poses[1])])
     assert not query.collides(solid, poses[0]) and query.collides(solid, poses[0], solids=poses[:1])
+
+
+def test_a_batch_tells_which_pose_is_none(tool, scene):
+    poses = poses_into_the_wall(9)
+    poses[[4, 7], 3:] = 0
+    with pytest.raises(vpm.RefusedError, match="pose 4 of 9, from 0: the quaternion"):
+        vpm.Query(tool).run_batch(scene, poses)
 
 
 def test_another_query_has_the_options_of_the_first(tool, scene):
