@@ -37,7 +37,6 @@ constexpr double kRounding = 1e-12;
 // Number of blocks that a task looks through, and of ranges of blocks that list new spheres.
 constexpr std::size_t kNumbersPerTask = 1 << 11, kRanges = 64;
 constexpr std::size_t kBlocksAround = 64;  // that list a sphere, mostly
-constexpr std::size_t kAhead = 8;          // number of blocks that are read ahead
 // A block gives back memory when more than 1 / kUnusedPart of its cells' is unused, and takes 1 /
 // kSparePart more than it needs.
 constexpr std::size_t kUnusedPart = 4, kSparePart = 8;
@@ -586,9 +585,7 @@ std::vector<std::uint32_t> Space::place(std::span<const Sphere> spheres) {
     for (std::uint32_t i = 0; i < around.size(); ++i)
       for (const std::uint32_t b : around[i])
         if (b >= low && b < high) listings.push_back({b, first + i});
-    for (std::size_t k = 0; k < listings.size(); ++k) {
-      const auto [b, sphere] = listings[k];
-      if (k + kAhead < listings.size()) __builtin_prefetch(&blocks_[listings[k + kAhead].block]);
+    for (const auto& [b, sphere] : listings) {
       blocks_[b].spheres.push_back(sphere);
       if (is_promising(b, focus_) && is_cut(b)) touched[range].push_back(b);
     }
