@@ -48,8 +48,8 @@ struct SurfaceContact {
 
 struct SurfacePairSums {
   std::array<InnerSurface, 2> inner;
-  // Area of the one surface inside the other, or of the other inside the one, m^2; the larger. Up to
-  // that, of surfaces without depth.
+  // Area of the one surface inside the other, or of the other inside the one, m^2; the larger. Up
+  // to that, of surfaces without depth.
   double area = 0;
   std::size_t undecided = 0;  // pairs of triangles whose signs contradict each other
   std::size_t whole = 0;      // pieces of surface that nothing crosses and that lie inside
