@@ -82,9 +82,9 @@ class SameOverlap : public ::testing::Test {
 
 TEST_F(SameOverlap, AtRandomPoses) {
   const std::vector<Surface> solids{
-      surface_of(make_box(.5, .4, .3)), surface_of(make_torus(.3, .1, 20, 10)),
+      surface_of(make_box(.5, .4, .3)), surface_of(make_torus(.3, .1, 14, 7)),
       surface_of(make_icosphere(.4, 1)), surface_of(make_box(.6, .6, .006)),
-      surface_of(synthetic::make_torus_knot(2, 3, .25, .1, .05, 60, 6))};
+      surface_of(synthetic::make_torus_knot(2, 3, .25, .1, .05, 40, 5))};
   const std::vector<Poses> poses = random_poses(testing::effort(80));
   std::size_t met = 0;
   for (std::size_t i = 0; i < solids.size(); ++i)

@@ -78,6 +78,10 @@ struct PairLists {
   }
 };
 
+// Measures by the threads of a block, which all call its functions. Refers to its arguments. The
+// launch gives PairLists<kThreads>::bytes() of dynamic shared memory. A pose is measured in steps:
+// walk() finds the segments that triangles share, mark_crossed() what they tell of vertices and
+// nodes, add_crossed() and add_whole() sum up both surfaces' parts inside.
 template <unsigned kThreads>
 class PairMeasure {
   using Lists = PairLists<kThreads>;
@@ -114,6 +118,7 @@ class PairMeasure {
     if (threadIdx.x == 0) state_.counts = shared, shared = {};
     return true;
   }
+  // Sums up what the walk has found, and returns what run() does.
   __device__ double finish(bool& has_room, unsigned& undecided) {
     __syncthreads();
     mark_crossed();
@@ -142,6 +147,8 @@ class PairMeasure {
   __device__ const SurfaceView& surface(unsigned role) const { return pair_.surface[role]; }
 
   // --- Marks ---
+
+  // Returns the words of a mark, a bit for each node or vertex.
   __device__ unsigned* marks(unsigned role, Mark mark) const {
     unsigned* words = marks_ + (role == 0 ? 0 : Lists::words_of(surface(0)));
     if (mark == crossed_node) return words;
@@ -157,6 +164,7 @@ class PairMeasure {
     return (atomicOr(&marks(role, mark)[k / 32], bit) & bit) != 0;
   }
 
+  // Prepares the block's memory for a pose, with the roots on the stack.
   __device__ void start(const Pose& pose) {
     if (threadIdx.x == 0) {
       state_.to_other[0] = inverse(pose), state_.to_other[1] = pose;
@@ -188,9 +196,8 @@ class PairMeasure {
 
   // Walks both trees down together from the roots: takes the newest pairs of nodes, sixteen lanes
   // for each, puts the pairs of their children that may meet on the stack, and lists those of
-  // triangles, which are met whenever the list is nearly full.
-  // Blocks that share a pose walk down alike until there is enough for all, and then each goes on
-  // with its own.
+  // triangles, which are met whenever the list is nearly full. Blocks that share a pose walk alike
+  // until there is enough for all, and then each goes on with its own.
   __device__ void walk(const BlockRange& part) {
     const unsigned lane = threadIdx.x % Lists::kLanes, group = threadIdx.x / Lists::kLanes;
     unsigned stacked = 0;
@@ -285,6 +292,7 @@ class PairMeasure {
       state_.counts.lacks_room = 1;
   }
 
+  // Returns a triangle in the first's frame.
   __device__ PlacedTriangle placed(unsigned role, std::uint32_t triangle) const {
     const SurfaceView& of = surface(role);
     const Triangle index = of.triangles[triangle];
@@ -298,6 +306,7 @@ class PairMeasure {
   __device__ void meet_listed(unsigned count) {
     for (unsigned k = threadIdx.x; k < count; k += kThreads) meet(listed_[k].x, listed_[k].y);
   }
+  // Finds how two triangles meet, and lists the segment that they share.
   __device__ void meet(std::uint32_t first, std::uint32_t second) {
     const PlacedTriangle a = placed(0, first), b = placed(1, second);
     const PairTests<double> tests(a.corner, a.normal, b.corner, b.normal,
