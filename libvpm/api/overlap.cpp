@@ -143,9 +143,10 @@ void OverlapQuery::run(std::span<const Pose> a, std::span<const Pose> b,
   constexpr std::size_t kPosesPerTask = 32;  // each takes a pair of its own
   Impl& held = impl();
   if (a.size() != b.size() || a.size() != answers.size())
-    invalid("there are " + std::to_string(a.size()) + " poses of a, " + std::to_string(b.size()) +
-                " of b and " + std::to_string(answers.size()) + " answers",
-            "give as many of each");
+    throw Error(ErrorKind::invalid_argument, "there are " + std::to_string(a.size()) +
+                                                 " poses of a, " + std::to_string(b.size()) +
+                                                 " of b and " + std::to_string(answers.size()) +
+                                                 " answers");
   std::vector<SolidJob> jobs(a.size());
   for (std::size_t k = 0; k < jobs.size(); ++k)
     jobs[k] = {0, 1, exact_pose(a[k]), exact_pose(b[k])};
