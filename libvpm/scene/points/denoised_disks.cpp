@@ -130,24 +130,34 @@ class Smoothing {
     return std::any_of(kinds_.begin() + leaf.begin, kinds_.begin() + leaf.end, is_smooth);
   }
 
-  // Makes the cell of a leaf from its disks that are alike, as they are now.
+  // Makes the cell of a leaf from its disks that are alike and on one surface, as they are now.
   void set_cell(const DiskLeaf& leaf) {
     Vec3 normals;
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) normals += denoised(i).normal;
     const Vec3 axis = normalized_or_zero(normals);
+    const Disk all = mean_of(leaf, [&](const Disk& d) { return dot(d.normal, axis) >= kAlike; });
+    const double most = kOneSurface * windows_.window(leaf.begin, leaf);
+    std::uint32_t count = 0;
+    const auto takes = [&](const Disk& d) {
+      return dot(d.normal, axis) >= kAlike && std::fabs(circle_height(all, d)) <= most;
+    };
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) count += takes(denoised(i)) ? 1 : 0;
+    cells_[leaf.begin / PointTree::kLeafSize] = {mean_of(leaf, takes), count,
+                                                 leaf.end - leaf.begin - count};
+  }
+  // Returns the mean of those disks of a leaf for which takes(disk) is true.
+  template <class Takes>
+  Disk mean_of(const DiskLeaf& leaf, const Takes& takes) const {
     PlaneSum sum;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-      if (dot(denoised(i).normal, axis) >= kAlike) sum.add(denoised(i), {});
-    }
-    DiskCell& cell = cells_[leaf.begin / PointTree::kLeafSize];
-    cell = {{}, sum.count, leaf.end - leaf.begin - sum.count};
-    if (sum.count == 0) return;
-    cell.disk = {1.0 / sum.count * sum.place, normalized_or_zero(sum.normal)};
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
+      if (takes(denoised(i))) sum.add(denoised(i), {});
+    if (sum.count == 0) return {};
+    Disk mean{1.0 / sum.count * sum.place, normalized_or_zero(sum.normal)};
     double height = 0;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-      if (dot(denoised(i).normal, axis) >= kAlike) height += circle_height(cell.disk, denoised(i));
-    }
-    cell.disk.place += height / sum.count * cell.disk.normal;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
+      if (takes(denoised(i))) height += circle_height(mean, denoised(i));
+    mean.place += height / sum.count * mean.normal;
+    return mean;
   }
 
   // Marks a leaf if its disks are alike, and so are nearly all near it.
@@ -158,7 +168,9 @@ class Smoothing {
     windows_.for_leaves_about(leaf, [&](std::uint32_t k) {
       const DiskCell& cell = cells_[k];
       const bool faces_alike = dot(cell.disk.normal, cells_[own].disk.normal) >= kAlike;
-      alike += faces_alike ? cell.alike : 0;
+      const double height = circle_height(cells_[own].disk, cell.disk);
+      const bool is_alike = faces_alike && std::fabs(height) <= kOneSurface * windows_.reach(leaf);
+      alike += is_alike ? cell.alike : 0;
       unlike += cell.unlike + (faces_alike ? 0 : cell.alike);
       return true;
     });

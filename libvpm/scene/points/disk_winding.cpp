@@ -156,21 +156,15 @@ void DiskDipoles::find_sides(const PointTree& tree) {
   // On the surface of one solid the mean of both sides is 1/2, on an inner face 3/2, and before a
   // wide wall, of which one side was seen, 0.
   constexpr double kInner = 1, kMaybeInner = 0.75, kMayEnclose = 0.25;
-  constexpr std::uint32_t kLeavesAsked = 4;  // one of so many neighbours tells for all
   const DiskWinding winding = this->winding();
   const auto leaf_of = [](std::uint32_t i) { return i / PointTree::kLeafSize; };
   std::vector<char> is_inner(count_);
   std::vector<double> of_leaf(leaf_of(count_ + PointTree::kLeafSize - 1));
   for_leaves(count_, [&](std::uint32_t begin, std::uint32_t) {
-    if (leaf_of(begin) % kLeavesAsked != 0) return;
-    const double number = winding.at(widen(nodes_[leaves_ + leaf_of(begin)].center));
-    for (std::uint32_t k = leaf_of(begin); k < of_leaf.size() && k < leaf_of(begin) + kLeavesAsked;
-         ++k)
-      of_leaf[k] = number;
+    of_leaf[leaf_of(begin)] = winding.at(widen(nodes_[leaves_ + leaf_of(begin)].center));
   });
   // Where a face becomes an inner one, at another surface, leaves hold points of both sides.
   const auto is_near_inner = [&](std::uint32_t begin) {
-    if (of_leaf[leaf_of(begin)] <= kMaybeInner) return false;
     const PointBox box = tree.leaf_of(begin);
     const Vec3 low = widen(box.low), high = widen(box.high);
     return !tree.for_leaves_in_ball(

@@ -111,9 +111,11 @@ void move_to_cells(std::span<const DiskCell> near, DiskInBall (&disks)[4]) {
   for (const DiskCell& cell : near) {
     const Vec3 n = cell.disk.normal, p = cell.disk.place;
     const Vec3x4 other(n, n, n, n), away = Vec3x4(p, p, p, p) - place;
-    const Double4 cosine = dot(normal, other),
+    // The distance aside: noise moves disks along their normals, which must not lower weights.
+    const Double4 cosine = dot(normal, other), above = dot(normal, away),
                   its_height = dot(normal + other, away) / (1 + cosine),
-                  weight = cell.alike * (1 - squared_norm(away) / squared_reach);
+                  aside = squared_norm(away) - above * above,
+                  weight = cell.alike * (1 - aside / squared_reach);
     const Mask4 counts =
         (weight > 0) & (cosine >= kAlike) & (absolute(its_height) <= kOneSurface * reach);
     add_where(counts, weight, weights);
