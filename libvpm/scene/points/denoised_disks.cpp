@@ -33,10 +33,6 @@ constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 constexpr double kUnlikeOfSmooth = 0.1;
 constexpr double kUnlikeOfCalm = 0.02;  // in a calm leaf: noise alone turns so few elsewhere
 
-// Factor by which windows of cells are wider than those of disks: weights that fall to 0 at their
-// rim leave as much noise so.
-constexpr double kWiderByCells = 1.155;
-
 bool is_among_its_like(const Neighborhood& around) {
   return around.unlike <= kUnlikeOfSmooth * around.alike;
 }
@@ -57,8 +53,6 @@ class Smoothing {
       : windows_(windows),
         result_(result),
         kinds_(windows.count()),
-        cells_(windows.leaf_count()),
-        is_even_(windows.leaf_count()),
         is_calm_(windows.leaf_count()),
         is_beside_(windows.leaf_count()) {}
 
@@ -66,25 +60,12 @@ class Smoothing {
   // and reads of others only what the pass does not write, so that the order of threads does not
   // matter.
   std::vector<DiskKind> run() {
-    pass([&](const DiskLeaf& leaf, LeafWork&) { set_cell(leaf); });
-    pass([&](const DiskLeaf& leaf, LeafWork&) { find_even(leaf); });
-    pass([&](const DiskLeaf& leaf, LeafWork& work) {
-      if (is_even_about(leaf))
-        denoise_among_cells(leaf, work);
-      else
-        denoise_among_alike(leaf, work);
-    });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_alike(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_beside_creases(leaf, work); });
     feet_before_ = result_.feet;
     normals_before_ = result_.normals;
-    pass([&](const DiskLeaf& leaf, LeafWork&) { set_cell(leaf); });
-    pass([&](const DiskLeaf& leaf, LeafWork& work) {
-      if (is_even_about(leaf))
-        denoise_among_cells(leaf, work);
-      else
-        denoise_among_denoised(leaf, work);
-    });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_denoised(leaf, work); });
     return std::move(kinds_);
   }
 
@@ -128,79 +109,6 @@ class Smoothing {
   }
   bool has_smooth(const DiskLeaf& leaf) const {
     return std::any_of(kinds_.begin() + leaf.begin, kinds_.begin() + leaf.end, is_smooth);
-  }
-
-  // Makes the cell of a leaf from its disks that are alike and on one surface, as they are now.
-  void set_cell(const DiskLeaf& leaf) {
-    Vec3 normals;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) normals += denoised(i).normal;
-    const Vec3 axis = normalized_or_zero(normals);
-    const Disk all = mean_of(leaf, [&](const Disk& d) { return dot(d.normal, axis) >= kAlike; });
-    const double most = kOneSurface * windows_.window(leaf.begin, leaf);
-    std::uint32_t count = 0;
-    const auto takes = [&](const Disk& d) {
-      return dot(d.normal, axis) >= kAlike && std::fabs(circle_height(all, d)) <= most;
-    };
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) count += takes(denoised(i)) ? 1 : 0;
-    cells_[leaf.begin / PointTree::kLeafSize] = {mean_of(leaf, takes), count,
-                                                 leaf.end - leaf.begin - count};
-  }
-  // Returns the mean of those disks of a leaf for which takes(disk) is true.
-  template <class Takes>
-  Disk mean_of(const DiskLeaf& leaf, const Takes& takes) const {
-    PlaneSum sum;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
-      if (takes(denoised(i))) sum.add(denoised(i), {});
-    if (sum.count == 0) return {};
-    Disk mean{1.0 / sum.count * sum.place, normalized_or_zero(sum.normal)};
-    double height = 0;
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
-      if (takes(denoised(i))) height += circle_height(mean, denoised(i));
-    mean.place += height / sum.count * mean.normal;
-    return mean;
-  }
-
-  // Marks a leaf if its disks are alike, and so are nearly all near it.
-  void find_even(const DiskLeaf& leaf) {
-    const std::uint32_t own = leaf.begin / PointTree::kLeafSize;
-    if (cells_[own].unlike > 0) return;
-    std::uint32_t alike = 0, unlike = 0;
-    windows_.for_leaves_about(leaf, [&](std::uint32_t k) {
-      const DiskCell& cell = cells_[k];
-      const bool faces_alike = dot(cell.disk.normal, cells_[own].disk.normal) >= kAlike;
-      const double height = circle_height(cells_[own].disk, cell.disk);
-      const bool is_alike = faces_alike && std::fabs(height) <= kOneSurface * windows_.reach(leaf);
-      alike += is_alike ? cell.alike : 0;
-      unlike += cell.unlike + (faces_alike ? 0 : cell.alike);
-      return true;
-    });
-    is_even_[own] = alike >= kFewAlike && unlike <= kUnlikeOfCalm * alike;
-  }
-  bool is_even_about(const DiskLeaf& leaf) const {
-    return windows_.for_leaves_about(leaf, [&](std::uint32_t k) { return is_even_[k] != 0; });
-  }
-
-  // Moves the disks of a leaf to the means of cells, where all about it are even.
-  void denoise_among_cells(const DiskLeaf& leaf, LeafWork& work) {
-    work.cells.clear();
-    windows_.for_leaves_about(leaf, [&](std::uint32_t k) {
-      work.cells.push_back(cells_[k]);
-      return true;
-    });
-    for (std::uint32_t first = leaf.begin; first < leaf.end; first += 4) {
-      DiskInBall four[4];
-      for (std::uint32_t k = 0; k < 4; ++k) {
-        const std::uint32_t i = std::min(first + k, leaf.end - 1);
-        four[k] = {denoised(i), kWiderByCells * windows_.window(i, leaf)};
-      }
-      move_to_cells(work.cells, four);
-      for (std::uint32_t k = 0; k < 4 && first + k < leaf.end; ++k) {
-        result_.feet[first + k] = narrow(four[k].disk.place);
-        result_.normals[first + k] = narrow(normalized_or_zero(four[k].disk.normal));
-        kinds_[first + k] = DiskKind::clear;
-      }
-    }
-    is_calm_[leaf.begin / PointTree::kLeafSize] = 1;
   }
 
   void denoise_among_alike(const DiskLeaf& leaf, LeafWork& work) {
@@ -307,10 +215,9 @@ class Smoothing {
   const DiskWindows& windows_;
   DenoisedDisks& result_;
   std::vector<DiskKind> kinds_;
-  std::vector<DiskCell> cells_;  // per leaf
-  // Per leaf: its disks and nearly all about them are alike; hardly any disks about its disks face
+  // Per leaf: hardly any disks about its disks face
   // elsewhere; a leaf near it is not calm.
-  std::vector<char> is_even_, is_calm_, is_beside_;
+  std::vector<char> is_calm_, is_beside_;
   std::vector<Vec3f> feet_before_, normals_before_;  // the disks before the last pass
 };
 

@@ -99,34 +99,4 @@ void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
   }
 }
 
-VPM_VECTOR_CLONES
-void move_to_cells(std::span<const DiskCell> near, DiskInBall (&disks)[4]) {
-  const Double4 zero{};
-  const auto& [a, b, c, d] = disks;
-  const Vec3x4 place(a.disk.place, b.disk.place, c.disk.place, d.disk.place);
-  const Vec3x4 normal(a.disk.normal, b.disk.normal, c.disk.normal, d.disk.normal);
-  const Double4 reach{a.reach, b.reach, c.reach, d.reach}, squared_reach = reach * reach;
-  Vec3x4 normals(zero, zero, zero);
-  Double4 height = zero, weights = zero;
-  for (const DiskCell& cell : near) {
-    const Vec3 n = cell.disk.normal, p = cell.disk.place;
-    const Vec3x4 other(n, n, n, n), away = Vec3x4(p, p, p, p) - place;
-    // The distance aside: noise moves disks along their normals, which must not lower weights.
-    const Double4 cosine = dot(normal, other), above = dot(normal, away),
-                  its_height = dot(normal + other, away) / (1 + cosine),
-                  aside = squared_norm(away) - above * above,
-                  weight = cell.alike * (1 - aside / squared_reach);
-    const Mask4 counts =
-        (weight > 0) & (cosine >= kAlike) & (absolute(its_height) <= kOneSurface * reach);
-    add_where(counts, weight, weights);
-    add_where(counts, weight * its_height, height);
-    add_where(counts, weight * other, normals);
-  }
-  for (int k = 0; k < kFour; ++k) {
-    if (!(weights[k] > 0)) continue;
-    disks[k].disk.place += height[k] / weights[k] * disks[k].disk.normal;
-    disks[k].disk.normal = normals.of(k);
-  }
-}
-
 }  // namespace vpm

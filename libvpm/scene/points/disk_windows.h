@@ -20,19 +20,6 @@ struct Disk {
   Vec3 place, normal;  // centre, about the cloud's origin, m; unit vector into free space
 };
 
-// Returns the height at which the circle, or line, that is normal to two disks and leads through
-// the middle of the second meets the axis of the first, m.
-inline double circle_height(const Disk& one, const Disk& other) {
-  return dot(one.normal + other.normal, other.place - one.place) /
-         (1 + dot(one.normal, other.normal));
-}
-
-// Mean of alike disks of a leaf, with their number and that of others.
-struct DiskCell {
-  Disk disk;
-  std::uint32_t alike = 0, unlike = 0;
-};
-
 // Limits of the cosine between the normals of two disks.
 inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
 inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
@@ -81,10 +68,6 @@ struct DiskInBall {
 // these, and may hold others.
 void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
                  Neighborhood (&found)[4]);
-
-// Moves four disks along their normals to the mean height of cells that face their way, with
-// weights that fall to 0 at the balls' rims, and gives them the sum of their normals.
-void move_to_cells(std::span<const DiskCell> near, DiskInBall (&disks)[4]);
 
 // Radii of windows, in sampling radii: kWindow is a little wider than the 7 x 7 pixels by which
 // normals are estimated, kWide reaches beyond windows that hold both sides of a crease.
@@ -272,7 +255,6 @@ struct LeafWork {
     SecondPlane second;
   };
   std::vector<Disk> near;
-  std::vector<DiskCell> cells;
   std::vector<Found> found;
 };
 
