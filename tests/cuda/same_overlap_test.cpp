@@ -112,7 +112,7 @@ TEST_F(SameOverlap, OfEnclosedFlushAndCoincidentSolids) {
   EXPECT_GE(of_flush.met, same.size());
   EXPECT_EQ(of_enclosed.met, enclosed.size());
   EXPECT_EQ(of_boxes.left + of_enclosed.left, 0U);
-  EXPECT_LE(of_flush.left, 2 * same.size());  // the host tells which only touch
+  EXPECT_LE(of_flush.left, 2 * same.size());                    // the host tells which only touch
   EXPECT_EQ(expect_same(torus, torus, same).met, same.size());  // the host may have to help
 }
 

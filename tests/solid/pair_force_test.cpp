@@ -82,7 +82,7 @@ TEST(PairForce, AgainstAHalfSpaceIsTheVolume) {
       pose.translation.z += 5;
       const SharedSolid shared = pair.measure(pose, {});
       ASSERT_GT(shared.volume, 0);
-      const double error = 2e-5 * tool->volume();
+      const double error = 1e-8 * tool->volume();
       EXPECT_NEAR(shared.force.z, shared.volume, error);
       EXPECT_NEAR(std::hypot(shared.force.x, shared.force.y), 0, error);
       EXPECT_NEAR(std::hypot(shared.torque.x, shared.torque.y), 0, error * tool->reach());
