@@ -41,7 +41,7 @@ class FacePlanes {
                                       std::span<const Triangle> triangles, double reach);
 
   // Returns the depth of x below the nearest plane and its gradient: negative outside of the solid,
-  // where it is no greater than the distance from it.
+  // and then no further from 0 than the solid is away.
   Depth depth(Vec3 x) const;
   // Returns that depth at x if it is linear within a radius of x.
   std::optional<Depth> linear_depth(Vec3 x, double radius) const;
