@@ -50,7 +50,7 @@ struct Rise {
 };
 
 double depth_below(const DepthFan::Plane& plane, Vec3 x) {
-  return std::max(plane.offset - dot(plane.normal, x), 0.0);
+  return std::max(plane.depth(x), 0.0);
 }
 
 }  // namespace

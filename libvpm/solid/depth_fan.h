@@ -14,11 +14,7 @@ namespace vpm {
 
 class DepthFan {
  public:
-  // All x with normal.x = offset.
-  struct Plane {
-    Vec3 normal;
-    double offset;
-  };
+  using Plane = FacePlanes::Plane;
 
   // Takes the part inside for a fan of triangles from `center`, where the depth is known. At the
   // segments it is 0 and grows as that below the planes in which they lie, one for each, outward

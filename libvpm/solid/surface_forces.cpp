@@ -109,7 +109,7 @@ SurfacePair::Precision SurfacePair::precision() {
   const double reach = per_unit_ * std::min(roles_[0].solid->reach(), roles_[1].solid->reach());
   const double flux = sums_.inner[0].moments.flux() + sums_.inner[1].moments.flux();
   const double per_unit3 = per_unit_ * per_unit_ * per_unit_, volume = per_unit3 * flux / 3;
-  const double area = std::max(roles_[0].sums.area.real(), roles_[1].sums.area.real());
+  const double area = area_inside();
   if (!(area > 0)) return {};
   const double depth = std::max(volume / area, kLeastDepth * reach), deep = kDeep * reach;
   const double part =
@@ -174,8 +174,8 @@ double SurfacePair::share_of_precise(std::size_t which, double error, double are
 
 // Adds the forces on all that is inside, after all moments are summed.
 void SurfacePair::add_forces() {
-  const double area = std::max(roles_[0].sums.area.real(), roles_[1].sums.area.real());
-  wrench_scale_ = std::min(std::ldexp(1.0, -std::ilogb(std::max(area, kLeastArea))), kMostScale);
+  const double area = std::max(area_inside(), kLeastArea);
+  wrench_scale_ = std::min(std::ldexp(1.0, -std::ilogb(area)), kMostScale);
   const bool is_below_planes[2] = {planes_below(0) != nullptr, planes_below(1) != nullptr};
   if (!(is_below_planes[0] && is_below_planes[1])) precision_ = precision();
   for (std::size_t role = 0; role < 2; ++role) {

@@ -186,6 +186,8 @@ class SurfacePair {
   void add_wrench(WideWrench& sum, const ForceAndTorque& f) const {
     sum.add(wrench_scale_ * f.force, wrench_scale_ * f.torque);
   }
+  // Returns SurfacePairSums::area, in the unit.
+  double area_inside() const { return per_unit_ * per_unit_ * sums_.area; }
   void add_forces();
   Precision precision();
   double depth_of_largest();
