@@ -60,8 +60,8 @@ class BlockTree {
     return entry == kNone ? kNone : entry - kBlock;
   }
 
-  // Calls take(block) for all blocks whose cube, like those around it except the unit cube, has its
-  // centre nearer to x than reach(level).
+  // Calls take(block) for each block whose cube has its centre nearer to x than reach(level), if so
+  // has each of the larger cubes that hold it, except the unit cube.
   template <typename Reach, typename Take>
   void visit(Vec3 x, const Reach& reach, const Take& take) const {
     visit(nodes_[0][0], {}, x, reach, take);

@@ -377,8 +377,8 @@ Space::Parts Space::split_block(std::uint32_t number) {
   return parts;
 }
 
-// Cuts blocks, ascending, into eighths and returns these, ascending. Blocks without any room stay
-// whole, without cells.
+// Cuts blocks, whose numbers ascend, into eighths, and returns the numbers of all eighths, which
+// ascend too. Blocks without any room stay whole, without cells.
 std::vector<std::uint32_t> Space::split_blocks(const std::vector<std::uint32_t>& wide) {
   std::vector<Parts> parts(wide.size());
   parallel_for(wide.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {

@@ -308,8 +308,9 @@ struct PlaneInRow {
   double inverse, along_u, u, along_row, half, least, greatest;
 };
 
-// Widens the ranges of the pixels from `first` to `last` of a row; there is room for kTogether
-// more.
+// Widens the ranges of inverse depth that a row holds of its pixels from `first` to `last` by that
+// of a triangle's plane over each. Takes kTogether at once, so the row has room for as many after
+// `last`.
 [[gnu::always_inline]] inline void widen_row(const PlaneInRow& plane, int first, int last,
                                              float* row) {
   for (int u = first; u <= last; u += kTogether) {

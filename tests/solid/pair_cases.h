@@ -33,7 +33,7 @@ inline Solid moved(Solid solid, const Pose& pose) {
   return solid;
 }
 
-// Adds a solid, moved, to another one.
+// Adds the shells of one solid, moved by so many metres, to those of another.
 inline void append(Solid& solid, const Solid& more, Vec3 by = {}) {
   const auto first = static_cast<std::uint32_t>(solid.vertices.size());
   for (const Vec3& v : more.vertices) solid.vertices.push_back(v + by);

@@ -10,8 +10,8 @@
 
 namespace vpm::cuda {
 
-// Adds what a plane has behind it of a sample to the sums of one lane, `row`, if the sample is a
-// ball; returns false if its shape is in a FaceRow. Those come last in their blocks, and
+// Adds the part of a sample behind a plane to the sums of one lane, `row`, if the sample is a ball;
+// returns false if its shape is in a FaceRow. Those come last in their blocks, and
 // add_face_to_row() adds them once all balls are added, so that no ball waits for their longer way.
 __device__ inline bool add_ball_to_row(const CellSample& sample, const ClipPlane& plane,
                                        ClippedMoments& row) {

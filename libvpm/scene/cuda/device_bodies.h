@@ -48,7 +48,8 @@ class FetchedImage {
  public:
   explicit FetchedImage(const DeviceDepthBody& image);
 
-  // Begins to copy the image, in a stream.
+  // Begins to copy the image from the device to the host, in a stream; it is there when the stream
+  // is done.
   void fetch(cudaStream_t stream);
   const DepthSurface& surface() const { return surface_; }
 

@@ -122,7 +122,8 @@ class DiskWindows {
   double wide_window(std::uint32_t i, const DiskLeaf& leaf) const {
     return at_most(kWide * measured_.radii[i], kLeavesInWide * leaf.diagonal);
   }
-  // Limits a radius; leaves of which all disks are at one place have no limit.
+  // Returns the radius, m, or the limit if that is less. A limit of 0, which a leaf has of which
+  // all disks are at one place, does not count.
   static double at_most(double radius, double limit) {
     return limit > 0 ? std::min(radius, limit) : radius;
   }

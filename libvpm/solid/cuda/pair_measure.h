@@ -97,8 +97,8 @@ class PairMeasure {
     found_ = &state_.counts;
   }
 
-  // Measures at a pose, which maps the second's frame to the first's. Returns the sum of PairAnswer
-  // whose number this thread has; other threads' values are void.
+  // Measures the pair at a pose, which maps the second's frame to the first's. Thread k of the
+  // block receives sum k of PairAnswer; what threads from kSums on receive means nothing.
   __device__ double run(const Pose& pose, bool& has_room, unsigned& undecided) {
     start(pose);
     walk({});
