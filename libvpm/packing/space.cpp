@@ -4,13 +4,11 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/packing/ascent.h"
-#include "libvpm/packing/thin_part.h"
 
 namespace vpm {
 namespace {
@@ -25,34 +23,13 @@ constexpr double kRootListDistance = 2;  // above the cube's diagonal
 constexpr float kLeaf = 0.25f;
 // A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
 constexpr double kSlope = 2.5;
-// Distance of the mesh from a cell's centre, in half diagonals, up to which thin parts are searched
-// for.
-constexpr float kNearFace = 0.5f;
-// A sphere counts as nearest to a point if no triangle is nearer than its distance plus these
-// relative and absolute margins: a triangle that it touches may lie between.
-constexpr double kBehind = 1e-3, kTouching = 1e-9;
 constexpr std::size_t kBlocksPerTask = 8, kSpheresPerTask = 8;
-// More than what rounding changes in distances within the unit cube, and less than any room.
-constexpr double kRounding = 1e-12;
 // Number of blocks that a task looks through, and of ranges of blocks that list new spheres.
 constexpr std::size_t kNumbersPerTask = 1 << 11, kRanges = 64;
 constexpr std::size_t kBlocksAround = 64;  // that list a sphere, mostly
 // A block gives back memory when more than 1 / kUnusedPart of its cells' is unused, and takes 1 /
 // kSparePart more than it needs.
 constexpr std::size_t kUnusedPart = 4, kSparePart = 8;
-
-// Returns half the diagonal of a cell, rounded up.
-float half_diagonal(int level) {
-  return static_cast<float>(0.866025404 * edge_of_level(level));
-}
-
-float round_down(double v) {
-  return std::nextafter(static_cast<float>(v), 0.0f);
-}
-
-float round_up(double v) {
-  return std::nextafter(static_cast<float>(v), HUGE_VALF);
-}
 
 // Returns the numbers of all lists, one list after the other.
 std::vector<std::uint32_t> joined(const std::vector<std::vector<std::uint32_t>>& lists) {
@@ -76,13 +53,6 @@ std::vector<std::uint32_t> those_for_which(std::size_t count, const Number& numb
   return joined(found);
 }
 
-// True if a sphere is for sure no nearer to a point than `distance`: most are told without a root.
-// `from` leads from the sphere's centre to the point.
-bool is_beyond(Vec3 from, double radius, double distance) {
-  const double reach = radius + distance + kRounding;
-  return squared_norm(from) > reach * reach;
-}
-
 // Returns the sphere of radius `cap` that touches the nearest obstacle of x.
 Sphere against_obstacle(Vec3 x, const SeparationBound& at, double cap) {
   return {x - (at.value - cap) * at.away, cap};
@@ -91,15 +61,14 @@ Sphere against_obstacle(Vec3 x, const SeparationBound& at, double cap) {
 }  // namespace
 
 Space::Space(const SolidDistance& solid, double smallest, std::size_t most_blocks)
-    : solid_(solid), smallest_(static_cast<float>(smallest)), most_blocks_(most_blocks) {
-  Cell root{};
-  root.x = root.y = root.z = 0.5f;
-  root.triangle = SurfacePoint::kNone;
-  blocks_.push_back({.list_distance = kRootListDistance});
-  estimate(root, blocks_[0]);
-  measure(root);
-  blocks_[0].cells = {root};
-  bounds_ = {root.bound};
+    : solid_(solid),
+      smallest_(static_cast<float>(smallest)),
+      most_blocks_(most_blocks),
+      room_(solid, spheres_, smallest_) {
+  Block& whole = blocks_.emplace_back();
+  whole.listed.distance = kRootListDistance;
+  whole.cells = {room_.root(whole.listed)};
+  bounds_ = {whole.cells.front().bound};
 }
 
 Space::~Space() {
@@ -171,174 +140,17 @@ void Space::keep_most_room(std::vector<std::uint32_t>& blocks, std::size_t most)
   std::sort(blocks.begin(), blocks.end());
 }
 
-// Returns the surface point nearest to the cell's centre, if nearer than `within`. Starts from the
-// triangle nearest to a parent's centre, which makes the search short.
-SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
-  const Vec3 x = cell.center();
-  if (cell.triangle == SurfacePoint::kNone) return solid_.closest(x, within);
-  const Vec3 p = solid_.closest_on(cell.triangle, x);
-  const SurfacePoint known{p, norm(x - p), cell.triangle};
-  if (cell.exact) return known.distance < within ? known : SurfacePoint{};
-  if (known.distance >= within) return solid_.closest(x, within);
-  const SurfacePoint nearer = solid_.closest(x, known.distance);
-  return nearer.triangle == SurfacePoint::kNone ? known : nearer;
-}
-
-// Sets d and bound from the spheres and from the triangle nearest to a parent. Needs cell.mesh.
-void Space::estimate(Cell& cell, const Block& block) const {
-  const Vec3 x = cell.center();
-  double d = block.list_distance, bound = d + half_diagonal(cell.level);
-  const auto take = [&](const Sphere& s) {
-    const Vec3 from = x - s.center;
-    if (is_beyond(from, s.radius, d)) return;
-    const double beside = norm(from) - s.radius;
-    if (beside >= d) return;
-    d = beside;
-    bound = farthest(cell, s);
-  };
-  for (const std::uint32_t i : block.spheres) take(spheres_[i]);
-  cell.measured = d <= cell.mesh;
-  if (!cell.measured && cell.triangle != SurfacePoint::kNone)
-    take({solid_.closest_on(cell.triangle, x), 0});
-  cell.d = static_cast<float>(d);
-  cell.bound = round_up(bound);
-}
-
-// Finds the nearest triangle, for cells whose estimate does not exclude a sphere.
-void Space::measure(Cell& cell) const {
-  cell.measured = true;
-  const SurfacePoint p = nearest_on_mesh(cell, cell.d);
-  if (p.triangle != SurfacePoint::kNone) {
-    cell.triangle = p.triangle;
-    cell.exact = true;
-    cell.d = static_cast<float>(p.distance);
-    cell.bound = std::min(cell.bound, round_up(farthest(cell, {p.point, 0})));
-  }
-  cell.mesh = std::max(cell.mesh, round_down(cell.d));
-  // This centre and the parent's are on the same side if both lie in a ball that the mesh does not
-  // meet.
-  const bool same = cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level);
-  settle(cell, same ? cell.parent : cell.side);
-}
-
-// Bounds a cell before it is cut: a cell much larger than the part or gap is thin needs no cutting
-// until spheres of that size are sought.
-void Space::bound_narrow_part(Cell& cell, const Block& block) const {
-  const float half = half_diagonal(cell.level);
-  if (cell.mesh > kNearFace * half) return;
-  const Vec3 x = cell.center();
-  const double half_edge = edge_of_level(cell.level + 1);
-  if (!cell.thick) {
-    const ThinPart part = thin_part(solid_, x, half_edge);
-    cell.thick = !part.faces_meet;
-    cell.bound = std::min(cell.bound, round_up(part.bound));
-  }
-  const Sphere* nearest = nullptr;
-  double beside = half;
-  for (const std::uint32_t i : block.spheres) {
-    const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
-    if (d < beside) beside = d, nearest = &spheres_[i];
-  }
-  if (nearest != nullptr) {
-    const double bound = gap_bound(solid_, *nearest, x, half_edge, cell.bound);
-    cell.bound = std::min(cell.bound, round_up(bound));
-  }
-}
-
-// Bounds the clearance over a cell by all nearby obstacles together. Distances are convex with
-// curvature at most 1 / distance, so planes bound them from above within the cell.
-double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
-                          std::vector<LinearBound>& bounds) const {
-  const Vec3 x = cell.center();
-  const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
-  bounds.clear();
-  const auto add = [&](Vec3 from, double radius, bool flat) {
-    if (is_beyond(from, radius, horizon)) return;
-    const double distance = norm(from);
-    if (!(distance > 0) || distance - radius > horizon) return;
-    const double curvature = flat ? 0 : 1 / distance;
-    bounds.push_back({from / distance, distance - radius + 0.5 * curvature * half * half});
-  };
-  for (const std::uint32_t i : near) add(x - spheres_[i].center, spheres_[i].radius, false);
-  if (cell.mesh < horizon) {
-    const SurfacePoint p = nearest_on_mesh(cell, horizon);
-    if (p.triangle != SurfacePoint::kNone) {
-      cell.triangle = p.triangle;
-      cell.exact = true;
-      add(x - p.point, 0, solid_.holds_disk(p.triangle, p.point, half));
-    }
-    cell.mesh = std::max(cell.mesh, round_down(std::min(p.distance, horizon)));
-  }
-  if (bounds.empty()) return HUGE_VAL;
-  return max_min_step(bounds, edge_of_level(cell.level + 1)).value;
-}
-
-// Returns the largest distance of a point of the cell from a sphere; it is at some corner.
-double Space::farthest(const Cell& cell, const Sphere& from) {
-  const double h = edge_of_level(cell.level + 1);
-  const Vec3 d = cell.center() - from.center;
-  return norm({std::abs(d.x) + h, std::abs(d.y) + h, std::abs(d.z) + h}) - from.radius;
-}
-
-// Returns the side of a measured cell's centre. The nearest obstacle mostly decides: a face has the
-// inside behind it, and a sphere lies inside. Winding numbers take far longer.
-Space::Side Space::side_of(const Cell& cell, const Block& block) const {
-  const Vec3 x = cell.center();
-  std::uint32_t nearest = cell.exact ? cell.triangle : SurfacePoint::kNone;
-  if (!cell.exact) {
-    double beside = block.list_distance;
-    for (const std::uint32_t i : block.spheres)
-      beside = std::min(beside, norm(x - spheres_[i].center) - spheres_[i].radius);
-    if (beside < block.list_distance) {
-      nearest = solid_.closest(x, std::max(beside, 0.0) * (1 + kBehind) + kTouching).triangle;
-      if (nearest == SurfacePoint::kNone) return Side::inside;
-    }
-  }
-  const std::optional<bool> told =
-      nearest == SurfacePoint::kNone ? std::nullopt : solid_.inside_of_face(nearest, x);
-  return (told ? *told : solid_.inside(x)) ? Side::inside : Side::outside;
-}
-
-// Sets the side of the centre; outside, that bounds the cell.
-void Space::settle(Cell& cell, Side side) {
-  cell.side = side;
-  if (side == Side::outside)
-    cell.bound = std::min(cell.bound, half_diagonal(cell.level) - cell.mesh);
-}
-
-void Space::split(const Cell& cell, const Block& block, std::vector<Cell>& parts) const {
-  const auto level = static_cast<std::uint8_t>(cell.level + 1);
-  const auto offset = static_cast<float>(edge_of_level(level + 1));
-  // Half a part's diagonal, which is the distance of its centre from the cell's.
-  const float half = half_diagonal(level);
-  for (int octant = 0; octant < 8; ++octant) {
-    Cell part{};
-    part.x = cell.x + (octant & 1 ? offset : -offset);
-    part.y = cell.y + (octant & 2 ? offset : -offset);
-    part.z = cell.z + (octant & 4 ? offset : -offset);
-    part.mesh = cell.mesh - half;
-    part.level = level;
-    part.parent = cell.side;
-    part.triangle = cell.triangle;
-    part.thick = cell.thick;
-    estimate(part, block);
-    part.bound = std::min(part.bound, cell.bound);
-    if (cell.mesh > half) settle(part, cell.side);  // both centres lie in a ball without triangles
-    if (part.bound > smallest_) parts.push_back(part);
-  }
-}
-
 void Space::split_cells(Block& block, int level, std::vector<Cell>& cells) const {
   for (Cell& cell : block.cells) {
     if (cell.level != level) {
       cells.push_back(cell);
       continue;
     }
-    if (!cell.measured) measure(cell);  // estimates from estimates would exclude nothing
+    if (!cell.measured) room_.measure(cell);  // estimates from estimates would exclude nothing
     if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
-      settle(cell, side_of(cell, block));
-    bound_narrow_part(cell, block);
-    if (cell.bound > smallest_) split(cell, block, cells);
+      room_.find_side(cell, block.listed);
+    room_.bound_narrow_part(cell, block.listed);
+    if (cell.bound > smallest_) room_.split(cell, block.listed, cells);
   }
 }
 
@@ -362,15 +174,16 @@ Space::Parts Space::split_block(std::uint32_t number) {
     if (counts[octant] == 0) continue;
     parts.kept |= 1u << octant;
     Block& part = parts.blocks.emplace_back();
-    part.list_distance = list_distance;
+    part.listed.distance = list_distance;
     part.cells.reserve(counts[octant]);
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(part.cells),
                  [&](const Cell& cell) { return octant_of(cell) == octant; });
     const Vec3 at = cube.part(octant).center();
-    for (const std::uint32_t i : block.spheres)
-      if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
-    part.spheres.shrink_to_fit();
-    part.taken = part.spheres.size();
+    for (const std::uint32_t i : block.listed.spheres)
+      if (norm(at - spheres_[i].center) - spheres_[i].radius < near)
+        part.listed.spheres.push_back(i);
+    part.listed.spheres.shrink_to_fit();
+    part.taken = part.listed.spheres.size();
   }
   block.cells.clear();
   block.maxima.clear();
@@ -458,7 +271,7 @@ float Space::block_bound(const Block& block) {
 // `rest`. Cells that are not promising stay where they are: a block is searched for one band of
 // radii after the other, and each time few of its cells are.
 void Space::refine(Block& block, double radius, double cap, Scratch& scratch) const {
-  auto& [leaves, rest, pending, bounds] = scratch;
+  auto& [leaves, rest, pending, planes] = scratch;
   const auto promising = std::partition(block.cells.begin(), block.cells.end(),
                                         [&](const Cell& cell) { return cell.bound < radius; });
   pending.assign(promising, block.cells.end());
@@ -467,14 +280,14 @@ void Space::refine(Block& block, double radius, double cap, Scratch& scratch) co
     Cell cell = pending.back();
     pending.pop_back();
     const float half = half_diagonal(cell.level);
-    if (cell.bound >= radius && !cell.measured) measure(cell);
+    if (cell.bound >= radius && !cell.measured) room_.measure(cell);
     if (cell.bound < radius) {
       if (cell.bound > smallest_) rest.push_back(cell);
       continue;
     }
-    if (cell.side == Side::unknown) settle(cell, side_of(cell, block));
+    if (cell.side == Side::unknown) room_.find_side(cell, block.listed);
     if (cell.side == Side::inside && cell.d > 0 && cell.d < radius)
-      cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres, bounds)));
+      room_.bound_jointly(cell, block.listed, planes);
     if (cell.bound < radius) {
       if (cell.bound > smallest_) rest.push_back(cell);
       continue;
@@ -483,9 +296,9 @@ void Space::refine(Block& block, double radius, double cap, Scratch& scratch) co
       leaves.push_back(cell);
       continue;
     }
-    bound_narrow_part(cell, block);
+    room_.bound_narrow_part(cell, block.listed);
     if (cell.bound >= radius) {
-      split(cell, block, pending);
+      room_.split(cell, block.listed, pending);
     } else if (cell.bound > smallest_) {
       rest.push_back(cell);
     }
@@ -496,7 +309,7 @@ void Space::search(std::uint32_t number, double radius, double cap, std::size_t 
                    std::vector<Sphere>& found) {
   Block& block = blocks_[number];
   static thread_local Scratch scratch;  // getting memory anew would take a tenth of all time
-  auto& [leaves, rest, pending, bounds] = scratch;
+  auto& [leaves, rest, pending, planes] = scratch;
   leaves.clear(), rest.clear();
   refine(block, radius, cap, scratch);
   std::sort(leaves.begin(), leaves.end(), [](const Cell& a, const Cell& b) {
@@ -549,8 +362,8 @@ double Space::local_maximum(Block& block, const Cell& leaf, double radius, doubl
 SeparationBound Space::separation(Vec3 x, double within) const {
   const std::uint32_t b = tree_.find(x);
   if (b == BlockTree::kNone) return {-1, {}, {}};
-  SeparationBound best{std::min(within, blocks_[b].list_distance), {}, {}};
-  for (const std::uint32_t i : blocks_[b].spheres) {
+  SeparationBound best{std::min(within, blocks_[b].listed.distance), {}, {}};
+  for (const std::uint32_t i : blocks_[b].listed.spheres) {
     const Vec3 from = x - spheres_[i].center;
     if (is_beyond(from, spheres_[i].radius, best.value)) continue;
     const double d = norm(from) - spheres_[i].radius;
@@ -586,7 +399,7 @@ std::vector<std::uint32_t> Space::place(std::span<const Sphere> spheres) {
       for (const std::uint32_t b : around[i])
         if (b >= low && b < high) listings.push_back({b, first + i});
     for (const auto& [b, sphere] : listings) {
-      blocks_[b].spheres.push_back(sphere);
+      blocks_[b].listed.spheres.push_back(sphere);
       if (is_promising(b, focus_) && is_cut(b)) touched[range].push_back(b);
     }
     std::sort(touched[range].begin(), touched[range].end());
@@ -611,7 +424,7 @@ void Space::update(const std::vector<std::uint32_t>& blocks) {
   parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Block& block = blocks_[blocks[i]];
-      if (block.taken == block.spheres.size()) continue;
+      if (block.taken == block.listed.spheres.size()) continue;
       take_new(block);
       bounds_[blocks[i]] = block_bound(block);
     }
@@ -620,10 +433,10 @@ void Space::update(const std::vector<std::uint32_t>& blocks) {
 
 // Takes the spheres listed since the last call from the room of a block.
 void Space::take_new(Block& block) const {
-  const std::span<const std::uint32_t> fresh = std::span(block.spheres).subspan(block.taken);
-  block.taken = block.spheres.size();
+  const std::span<const std::uint32_t> fresh = std::span(block.listed.spheres).subspan(block.taken);
+  block.taken = block.listed.spheres.size();
   std::erase_if(block.cells, [&](Cell& cell) {
-    for (const std::uint32_t i : fresh) take_from(cell, spheres_[i]);
+    for (const std::uint32_t i : fresh) CellRoom::take_from(cell, spheres_[i]);
     return cell.bound <= smallest_;
   });
   std::erase_if(block.maxima, [&](const Sphere& m) {
@@ -631,13 +444,6 @@ void Space::take_new(Block& block) const {
       return norm(m.center - spheres_[i].center) - spheres_[i].radius < m.radius;
     });
   });
-}
-
-void Space::take_from(Cell& cell, const Sphere& sphere) {
-  const Vec3 from = cell.center() - sphere.center;
-  if (is_beyond(from, sphere.radius, double{std::max(cell.d, cell.bound)})) return;
-  cell.d = std::min(cell.d, static_cast<float>(norm(from) - sphere.radius));
-  cell.bound = std::min(cell.bound, round_up(farthest(cell, sphere)));
 }
 
 }  // namespace vpm

@@ -1,10 +1,9 @@
-// Room left in a solid: an octree of cells with upper bounds of the clearance, grouped in blocks
-// that know the spheres around them.
+// Room left in a solid: an octree of cells with upper bounds of the clearance (cell_room.h),
+// grouped in blocks that know the spheres around them.
 //
-// The clearance d(x) = min(distance to the mesh, min_i |x - c_i| - r_i) is 1-Lipschitz, so
-// d(centre) + half diagonal bounds it over a cell. Cells that cannot hold a sphere of the sought
-// radius rest; others are cut until their size is a fraction of that radius. No resolution is fixed
-// beforehand, so thin parts cost cells only where they are.
+// Cells that cannot hold a sphere of the sought radius rest; others are cut until their size is a
+// fraction of that radius. No resolution is fixed beforehand, so thin parts cost cells only where
+// they are.
 //
 // Blocks are the leaves of a coarser octree. Those that may hold a sphere of the sought radius are
 // 2 to 4 times as wide as it; others rest as they are, whatever their width: the shell between a
@@ -20,7 +19,7 @@
 #include "libvpm/core/vec3.h"
 #include "libvpm/model/sphere.h"
 #include "libvpm/packing/block_tree.h"
-#include "libvpm/packing/linear_programme.h"
+#include "libvpm/packing/cell_room.h"
 #include "libvpm/packing/solid_distance.h"
 
 namespace vpm {
@@ -89,28 +88,10 @@ class Space {
   const std::vector<Sphere>& spheres() const { return spheres_; }
 
  private:
-  enum class Side : std::uint8_t { unknown, inside, outside };
-  struct Cell {
-    float x, y, z;  // centre; exact, multiples of 2^-24
-    // Upper bound on the clearance of the centre, if that is inside.
-    float d;
-    // Lower bound on the distance of the centre from the mesh.
-    float mesh;
-    // Upper bound on spheres centred in the cell.
-    float bound;
-    std::uint8_t level;  // edge length 2^-level
-    Side side;           // side of the centre
-    Side parent;         // side of the parent cell's centre
-    bool measured;       // d is exact, up to the block's list distance
-    // `triangle` is nearest to this centre, not to a parent's.
-    bool exact;
-    bool thick;  // holds no thin part (thin_part.h)
-    std::uint32_t triangle;
-    Vec3 center() const { return {x, y, z}; }
-  };
+  using Cell = CellRoom::Cell;
+  using Side = CellRoom::Side;
   struct Block {
-    double list_distance = 0;  // clearances are exact up to this
-    std::vector<std::uint32_t> spheres = {};
+    ListedSpheres listed;   // clearances are exact up to its distance
     std::size_t taken = 0;  // number of spheres known to cells and maxima
     std::vector<Cell> cells = {};
     // Local maxima found by searches of a larger radius.
@@ -125,7 +106,7 @@ class Space {
   // Lists of a search.
   struct Scratch {
     std::vector<Cell> leaves, rest, pending;
-    std::vector<LinearBound> bounds;
+    std::vector<LinearBound> planes;
   };
 
   std::vector<std::uint32_t> promising(double radius) const;
@@ -137,20 +118,9 @@ class Space {
   void split_cells(Block& block, int level, std::vector<Cell>& cells) const;
   void leave_out();
   void keep(const std::vector<std::uint32_t>& blocks);
-  void split(const Cell& cell, const Block& block, std::vector<Cell>& parts) const;
-  SurfacePoint nearest_on_mesh(const Cell& cell, double within) const;
-  void estimate(Cell& cell, const Block& block) const;
-  void measure(Cell& cell) const;
-  void bound_narrow_part(Cell& cell, const Block& block) const;
   void refine(Block& block, double radius, double cap, Scratch& scratch) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
-  double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
-                     std::vector<LinearBound>& bounds) const;
-  Side side_of(const Cell& cell, const Block& block) const;
-  static void settle(Cell& cell, Side side);
-  static double farthest(const Cell& cell, const Sphere& from);
   void take_new(Block& block) const;
-  static void take_from(Cell& cell, const Sphere& sphere);
   static float block_bound(const Block& block);
 
   const SolidDistance& solid_;
@@ -159,6 +129,7 @@ class Space {
   float left_out_ = 0;
   double focus_ = HUGE_VAL;  // radius last searched for
   std::vector<Sphere> spheres_;
+  CellRoom room_;
   BlockTree tree_;
   std::vector<Block> blocks_;
   std::vector<float> bounds_;  // largest cell bound of each block
