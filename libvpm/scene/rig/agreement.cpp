@@ -15,6 +15,7 @@ constexpr int kStep = 10;                         // pixels between those that a
 constexpr double kPerDeviation = 6;               // readings further apart are of two surfaces
 constexpr double kMostPixels = kSilhouetteReach;  // bounds the agreement
 constexpr double kWellBefore = 0.03;              // per depth
+constexpr std::size_t kPixelsPerTask = 512;       // that another camera is asked about
 
 // Holds a clear pixel's place and normal, the rig's frame, and its depth, m.
 struct ClearPixel {
@@ -36,7 +37,7 @@ std::vector<ClearPixel> clear_pixels(const RigCamera& camera, std::int32_t step)
 // Holds the depth of a pixel, m, and how far it is from what another camera sees there, per depth.
 using Deviation = std::pair<double, double>;
 
-void add_deviations(const std::vector<ClearPixel>& pixels, const RigCamera& other,
+void add_deviations(std::span<const ClearPixel> pixels, const RigCamera& other,
                     std::vector<Deviation>& deviations) {
   for (const ClearPixel& pixel : pixels) {
     const Vec3 at = other.from_rig * pixel.place;
@@ -103,19 +104,32 @@ RigAgreement agreement_of(std::span<const RigCamera> cameras) {
   };
   std::vector<std::vector<ClearPixel>> pixels(count);
   for_each(count, [&](std::size_t i) { pixels[i] = clear_pixels(cameras[i], kStep); });
+  // Pixels of camera i that camera j is asked about.
+  struct Part {
+    std::size_t i, j;
+    std::span<const ClearPixel> pixels;
+    std::vector<Deviation> deviations = {};
+  };
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      for (std::size_t k = 0; i != j && k < pixels[i].size(); k += kPixelsPerTask)
+        parts.push_back({i, j,
+                         std::span(pixels[i]).subspan(k).first(
+                             std::min(kPixelsPerTask, pixels[i].size() - k))});
+  for_each(parts.size(), [&](std::size_t k) {
+    Part& part = parts[k];
+    add_deviations(part.pixels, cameras[part.j], part.deviations);
+  });
   RigAgreement agreement;
   agreement.of_pairs.assign(count * count, kUnknown);
-  std::vector<std::vector<Deviation>> seen(count * count);  // of camera i's pixels by camera j
-  for_each(count * count, [&](std::size_t pair) {
-    const std::size_t i = pair / count, j = pair % count;
-    if (i != j) add_deviations(pixels[i], cameras[j], seen[pair]);
-  });
   for_each(count * count, [&](std::size_t pair) {
     const std::size_t i = pair / count, j = pair % count;
     if (i >= j) return;
-    std::vector<Deviation>& deviations = seen[pair];
-    const std::vector<Deviation>& other = seen[j * count + i];
-    deviations.insert(deviations.end(), other.begin(), other.end());
+    std::vector<Deviation> deviations;
+    for (const Part& part : parts)
+      if (std::min(part.i, part.j) == i && std::max(part.i, part.j) == j)
+        deviations.insert(deviations.end(), part.deviations.begin(), part.deviations.end());
     if (deviations.size() <= kFewReadings) return;
     agreement.of_pairs[pair] = agreement.of_pairs[j * count + i] = deviation_of(deviations);
   });

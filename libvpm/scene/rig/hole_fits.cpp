@@ -509,12 +509,10 @@ ImageHoles::ImageHoles(const DepthSampler& image) {
   const auto columns = static_cast<std::size_t>(HoleFits::tiles(image.width));
   const auto tell = [&](const HoleFit& fit, const std::vector<Pixel>& pixels) {
     fits_.push_back(fit);
-    numbers_.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     greatest_.resize(columns * static_cast<std::size_t>(HoleFits::tiles(image.height)));
     for (const Pixel& at : pixels) {
       const auto pixel = static_cast<std::uint32_t>(at.v * image.width + at.u),
                  number = static_cast<std::uint32_t>(fits_.size());
-      numbers_[pixel] = number;
       numbered_.push_back({pixel, number});
       float& greatest = greatest_[static_cast<std::size_t>(at.v >> HoleFits::kTileShift) * columns +
                                   static_cast<std::size_t>(at.u >> HoleFits::kTileShift)];
@@ -533,6 +531,13 @@ ImageHoles::ImageHoles(const DepthSampler& image) {
   for (const auto& fits : fitted)
     for (const auto& [fit, pixels] : fits) tell(fit, pixels);
   columns_ = static_cast<std::int32_t>(columns);
+}
+
+void ImageHoles::spread(const DepthSampler& image) {
+  if (fits_.empty()) return;
+  numbers_.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                  0);
+  for (const auto& [pixel, number] : numbered_) numbers_[pixel] = number;
 }
 
 }  // namespace vpm

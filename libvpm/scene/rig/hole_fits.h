@@ -74,6 +74,8 @@ class ImageHoles {
   // where it is nearest. Leaves out holes at the border of the image or beside what was removed,
   // and those of which a pixel is more than 24 away from all that was measured.
   explicit ImageHoles(const DepthSampler& image);
+  // Writes numbered() into an image, for view(). A device does so itself (cuda/rig_silhouettes.h).
+  void spread(const DepthSampler& image);
 
   HoleFits view() const {
     return {fits_.data(), fits_.empty() ? nullptr : numbers_.data(), greatest_.data(), columns_};
@@ -86,7 +88,7 @@ class ImageHoles {
 
  private:
   std::vector<HoleFit> fits_;
-  std::vector<std::uint32_t> numbers_;  // empty if there are no fits
+  std::vector<std::uint32_t> numbers_;  // empty if there are no fits, and before spread()
   std::vector<NumberedPixel> numbered_;
   std::vector<float> greatest_;  // empty without fits, too
   std::int32_t columns_ = 0;

@@ -22,22 +22,20 @@ constexpr float kBlur[] = {1.0F,        0.88249690F, 0.60653066F, 0.32465247F,
                            0.13533528F, 0.04393693F, 0.01110900F};
 constexpr int kBlurReach = static_cast<int>(std::size(kBlur)) - 1;
 
-// Holds inverse depth, 1/m, of an image whose small holes are filled with what is farther; 0 where
-// nothing is known.
-struct FilledImage {
-  int width = 0, height = 0;
-  std::vector<float> values;
+// Holds inverse depth, 1/m, of some rows of an image whose small holes are filled with what is
+// farther; 0 where nothing is known.
+struct FilledRows {
+  int width = 0, height = 0;  // of the image
+  int first = 0;              // row of the image
+  std::vector<float> values = {};
 
-  std::size_t index(int u, int v) const {
-    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(u);
+  // Returns row v, or the nearest one of the image.
+  const float* row(int v) const {
+    return values.data() + static_cast<std::size_t>(std::clamp(v, 0, height - 1) - first) *
+                               static_cast<std::size_t>(width);
   }
-  // Returns a row, or the nearest one of the image.
-  const float* row(int v) const { return values.data() + index(0, std::clamp(v, 0, height - 1)); }
   // Returns the value of a pixel, or of the nearest one of the image.
-  float at(int u, int v) const {
-    return values[index(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1))];
-  }
+  float at(int u, int v) const { return row(v)[std::clamp(u, 0, width - 1)]; }
 };
 
 // Takes the least of positive inverse depths of a row, and of those that `least` holds.
@@ -97,19 +95,23 @@ class HoleFill {
   std::vector<float> least_;  // by column, 1/m
 };
 
-FilledImage filled(const DepthSampler& image) {
-  FilledImage all{image.width, image.height, {}};
-  all.values.resize(all.index(0, image.height));
-  for_bands(image.height, [&](int begin, int end) {
-    HoleFill fill(image);
-    for (int v = begin; v < end; ++v) fill.take_row(v, all.values.data() + all.index(0, v));
-  });
-  return all;
+// Returns rows [begin, end), and those beside them that a blur reads. A band of them stays in the
+// cache, in memory that the allocator keeps.
+FilledRows filled(const DepthSampler& image, int begin, int end) {
+  const int first = std::max(begin - kBlurReach, 0),
+            last = std::min(end + kBlurReach, image.height);
+  FilledRows rows{image.width, image.height, first};
+  const auto width = static_cast<std::size_t>(image.width);
+  rows.values.resize(width * static_cast<std::size_t>(last - first));
+  HoleFill fill(image);
+  for (int v = first; v < last; ++v)
+    fill.take_row(v, rows.values.data() + width * static_cast<std::size_t>(v - first));
+  return rows;
 }
 
 // Sets the direction in which the blurred inverse depth falls at a pixel, whose width is `aspect`
 // times its height. What is not known is taken to be as near as the pixel, and turns nothing.
-void set_way_out(const FilledImage& image, int u, int v, float aspect, SilhouettePixel& pixel) {
+void set_way_out(const FilledRows& image, int u, int v, float aspect, SilhouettePixel& pixel) {
   const float own = image.at(u, v);
   float along_u = 0, along_v = 0;
   for (int y = -kBlurReach; y <= kBlurReach; ++y) {
@@ -130,7 +132,7 @@ void set_way_out(const FilledImage& image, int u, int v, float aspect, Silhouett
 
 // Returns the least inverse depth of the four pixels beside one that are farther by more than
 // kJump; 0 if there are none.
-float beyond(const FilledImage& image, int u, int v, float inverse) {
+float beyond(const FilledRows& image, int u, int v, float inverse) {
   float least = inverse;
   for (const auto& [x, y] : {std::pair{u + 1, v}, {u - 1, v}, {u, v + 1}, {u, v - 1}}) {
     const float value = image.at(x, y);
@@ -156,8 +158,8 @@ void mark_candidates(const float* above, const float* own, const float* below, i
 }
 
 // Returns the silhouette pixels of rows [begin, end), in order.
-std::vector<SilhouettePixel> find_pixels(const DepthSampler& image, const FilledImage& all,
-                                         int begin, int end) {
+std::vector<SilhouettePixel> find_pixels(const DepthSampler& image, int begin, int end) {
+  const FilledRows all = filled(image, begin, end);
   const auto aspect = static_cast<float>(image.k.fy / image.k.fx);
   std::vector<SilhouettePixel> pixels;
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(image.width));
@@ -288,11 +290,10 @@ SilhouetteKeys::SilhouetteKeys(double height) {
 }
 
 ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
-  const FilledImage all = filled(image);
   std::vector<std::vector<SilhouettePixel>> of_bands(
       static_cast<std::size_t>(bands_of(image.height)));
   for_bands(image.height, [&](int begin, int end) {
-    of_bands[static_cast<std::size_t>(begin / kRowsPerBand)] = find_pixels(image, all, begin, end);
+    of_bands[static_cast<std::size_t>(begin / kRowsPerBand)] = find_pixels(image, begin, end);
   });
   for (const std::vector<SilhouettePixel>& band : of_bands)
     pixels_.insert(pixels_.end(), band.begin(), band.end());
@@ -301,6 +302,7 @@ ImageSilhouettes::ImageSilhouettes(const DepthSampler& image) : holes_(image) {
 void ImageSilhouettes::spread(const DepthSampler& image) {
   nearest_.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
                   0);
+  holes_.spread(image);
   if (!pixels_.empty()) find_nearest(image);
   sum_tiles(image.width, image.height);
 }
