@@ -57,6 +57,7 @@ class Reader {
     const XmlFile file(path_, text, "robot", "a URDF file");
     check_circles(file);
     const urdf::ModelInterfaceSharedPtr model = parsed(text);
+    check_collisions(file, *model);
     robot_.name = model->getName();
     add_link(*model->getRoot());
     list_movable(file);
@@ -96,6 +97,24 @@ class Reader {
         if (!seen.insert(at->second).second)
           refuse("the joints go in a circle over link '" + file::shown(at->second) + "'", path_,
                  "remove the joint that closes the loop");
+    }
+  }
+
+  // Throws Error(refused) if a link has a collision that urdfdom does not read, since it leaves
+  // that out and reads on: the link would be smaller than it is, or be no obstacle at all.
+  void check_collisions(const XmlFile& file, const urdf::ModelInterface& model) const {
+    for (const TiXmlElement* element : file.children("link")) {
+      const urdf::LinkConstSharedPtr link = model.getLink(attribute(*element, "name"));
+      std::size_t written = 0;
+      for (const TiXmlElement* one = element->FirstChildElement("collision"); one != nullptr;
+           one = one->NextSiblingElement("collision"))
+        ++written;
+      if (!link || link->collision_array.size() == written) continue;
+      refuse("line " + std::to_string(element->Row()) + ": a <collision> of link '" +
+                 file::shown(link->name) + "' cannot be read",
+             path_,
+             "its <geometry> is one box, cylinder, sphere or mesh, all of whose numbers are there, "
+             "finite and with a decimal point; check_urdf (Debian: liburdfdom-tools) says more");
     }
   }
 
@@ -169,8 +188,6 @@ class Reader {
     const std::string what = "link '" + file::shown(link) + "'";
     CollisionShape shape;
     shape.to_link = pose_of(collision.origin, what);
-    if (!collision.geometry)
-      refuse(what + " has a collision without geometry", path_, "give it one");
     const urdf::Geometry& geometry = *collision.geometry;
     using Kind = CollisionShape::Kind;
     switch (geometry.type) {

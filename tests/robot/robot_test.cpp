@@ -178,6 +178,35 @@ TEST_F(RobotTest, FaultsAreNamedWithTheirCure) {
       std::string::npos);
 }
 
+// A collision that cannot be read is refused, also beside one that can, in place of a smaller link.
+TEST_F(RobotTest, NoCollisionIsLost) {
+  const std::string box = "<geometry><box size=\"1 1 1\"/></geometry>";
+  const std::string unread[] = {
+      "",
+      "<geometry/>",
+      "<geometry><capsule radius=\"1\" length=\"1\"/></geometry>",
+      "<geometry><sphere radius=\"nan\"/></geometry>",
+      "<geometry><sphere radius=\"0,5\"/></geometry>",
+      "<geometry><cylinder length=\"1\"/></geometry>",
+      "<geometry><box size=\"1 1\"/></geometry>",
+      "<geometry><mesh/></geometry>",
+      "<geometry><mesh filename=\"tetra.off\" scale=\"1,1,1\"/></geometry>",
+      "<origin xyz=\"0 0 1e400\"/>" + box,
+      "<origin xyz=\"0 0\"/>" + box,
+      "<origin rpy=\"0 0 inf\"/>" + box,
+  };
+  write("tetra.off", kTetrahedron);
+  for (const std::string& inner : unread)
+    for (const std::string& beside : {std::string(), "<collision>" + box + "</collision>"}) {
+      const std::string said =
+          refusal_of("<link name=\"a\">" + beside + "<collision>" + inner + "</collision></link>" +
+                     link("b") + joint("j", "fixed", "a", "b", ""));
+      EXPECT_NE(said.find("line 1: a <collision> of link 'a' cannot be read; "), std::string::npos)
+          << inner << "\n"
+          << said;
+    }
+}
+
 TEST_F(RobotTest, PairsAreIgnoredByJointsOrBySrdf) {
   using Pairs = std::vector<std::array<std::size_t, 2>>;
   const Robot robot =
