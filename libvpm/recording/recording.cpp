@@ -226,7 +226,9 @@ void place_by_path(PoseReader& reader, Recording& recording) {
   recording.camera_source = name;
   recording.camera_undefined = path.undefined();
   recording.camera_doubled = path.doubled();
-  const bool is_fixed = !path.has_times() && path.poses().size() == 1 && !reader.world().empty();
+  const bool is_fixed = !path.has_times() && path.poses().size() == 1;
+  if (is_fixed && reader.world().empty() && recording.frames.size() > 1)
+    recording.remarks.push_back({false, "the camera does not move: " + name + " has one pose"});
   if (!path.has_times() && !is_fixed && path.poses().size() != recording.frames.size())
     refuse(std::to_string(path.poses().size()) + " poses without times for " +
                std::to_string(recording.frames.size()) + " frames",

@@ -188,8 +188,11 @@ TEST_F(ARecording, TakesTheCamerasPathAtTheFramesTimes) {
   EXPECT_EQ(r.frames[1].camera->translation, (Vec3{1, 0, 0}));
   EXPECT_EQ(r.frames[2].camera->translation, (Vec3{2, 0, 0}));  // near enough to the last
   EXPECT_TRUE(r.frames[3].is_lost);
-  write("mine.txt", "7 0 0 0 0 0 1\n");
-  EXPECT_THROW(read({30, path("mine.txt"), {}}), Error);  // one pose for four frames
+  write("mine.txt", "7 0 0 0 0 0 1\n8 0 0 0 0 0 1\n");
+  EXPECT_THROW(read({30, path("mine.txt"), {}}), Error);  // two poses for four frames
+  write("mine.txt", "7 0 0 0 0 0 1\n");  // one is that of a camera that does not move
+  for (const RecordedFrame& frame : read({30, path("mine.txt"), {}}).frames)
+    EXPECT_EQ(frame.camera->translation, (Vec3{7, 0, 0}));
   write("mine.txt", "7 0 0 0 0 0 1\n7 0 0 0 0 0 1\n8 0 0 0 0 0 1\n9 0 0 0 0 0 1\n");
   EXPECT_EQ(read({30, path("mine.txt"), {}}).frames[2].camera->translation, (Vec3{8, 0, 0}));
 }

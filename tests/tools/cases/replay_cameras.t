@@ -27,6 +27,11 @@ $ vpm-normals left/depth/1000.066667.png -o left.vpmc --intrinsics 60,60,31.5,23
 $ vpm-query --tool cube.vpmg --cloud right.vpmc --cloud left.vpmc --pose 0,0,0.95,0,0,0,1 --quiet | cut -d, -f2- > afresh
 $ grep 'left/1000.066667.png;right/1000.066667.png' both.jsonl | cut -d, -f4- | sort -u | cmp - afresh
 
+# A camera that does not move has one pose, without a time: it is that of all its frames.
+$ echo '0.02 0 0 0 0 0 1' > fixed.txt && bash ask.sh --camera-poses left/groundtruth.txt --camera-poses fixed.txt -o fixed.jsonl 2>&1 | grep fixed
+vpm-query: note: right: the camera does not move: fixed.txt has one pose
+$ cmp fixed.jsonl both.jsonl
+
 # The page has the surface and the frustum of each camera, and what --remove took from them; nothing is in the way of what was removed.
 $ echo '{"remove":["cube.off@0,0,1,0,0,0,1"]}' > still.jsonl; bash ask.sh --camera-poses left/groundtruth.txt --camera-poses right.txt --remove still.jsonl -o removed.jsonl --view removed.html --rate 30 2>&1 | grep remove
 vpm-query: note: --remove: 2176 pixels removed from 6 images, with a margin of 0 m
