@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
+#include "libvpm/file/overwrite.h"
 #include "libvpm/view/sphere_files.h"
 #include "tools/common/length_units.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/program.h"
+#include "tools/query/kept_lines.h"
 #include "tools/query/solid_scene.h"
 
 namespace vpm::tools {
@@ -326,6 +329,22 @@ Leftover leftover_of(const Arguments& a, const CommonOptions& common) {
   return common.force ? Leftover::discard : Leftover::refuse;
 }
 
+// Refuses inputs and other outputs that a run would lose by keeping its lines there, even with
+// --force: they would be gone before they are read.
+void check_kept_lines(const Arguments& a, const std::vector<std::string>& inputs) {
+  for (const std::string& kept : KeptLines::beside(a.output)) {
+    const std::string reason =
+        "--output keeps its lines in " + kept + " until they are done, which ";
+    for (const std::string& input : inputs)
+      if (file::is_same_file(kept, input))
+        refuse_usage(reason + "is the input " + input + ": name another output");
+    for (const auto& [option, path] :
+         {std::pair{"--spheres-out", a.spheres_out}, {"--stats", a.stats}, {"--view", a.view}})
+      if (file::is_same_file(kept, path))
+        refuse_usage(reason + option + " names: name another file");
+  }
+}
+
 void check_names(const Arguments& a, const CommonOptions& common) {
   std::vector<std::string> solids;
   for (const std::string& text : a.solids) solids.push_back(solid_from_text(text, "--solid").name);
@@ -358,6 +377,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                {"--stats", a.stats, std::nullopt, OutputForm::json},
                {"--view", a.view, std::nullopt, OutputForm::page}},
               common);
+  check_kept_lines(a, inputs);
 }
 
 }  // namespace vpm::tools

@@ -77,6 +77,12 @@ bool KeptLines::are_kept(const std::string& path) {
   return !file::descriptor_of(path) && (!fs::exists(status) || fs::is_regular_file(status));
 }
 
+std::vector<std::string> KeptLines::beside(const std::string& path) {
+  if (path.empty() || !are_kept(path)) return {};
+  const std::string part = end_of_links(path) + ".part";
+  return {part, part + ".json"};
+}
+
 void KeptLines::check(const std::string& path, Leftover leftover) {
   const std::string part = end_of_links(path) + ".part";
   std::error_code fault;

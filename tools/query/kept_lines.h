@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vpm::tools {
 
@@ -22,6 +23,8 @@ class KeptLines {
  public:
   // True if a file will have this name, which is no pipe, device or standard output.
   static bool are_kept(const std::string& path);
+  // Returns the files that hold the lines and what they depend on until they are done.
+  static std::vector<std::string> beside(const std::string& path);
   // Throws Error(invalid_argument) if there are lines of an earlier run that are refused.
   static void check(const std::string& path, Leftover leftover);
 
