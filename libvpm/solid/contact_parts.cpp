@@ -288,17 +288,18 @@ std::span<const std::uint32_t> ContactParts::parts_of_face(std::uint32_t role, s
 
 CrossedTriangle ContactParts::piece(std::uint32_t role, std::uint32_t face, std::uint32_t part) {
   CrossedTriangle piece;
-  piece.corner = faces_[role][face].corner, piece.normal = faces_[role][face].normal;
+  piece.set_corners(faces_[role][face].corner, faces_[role][face].normal);
   for (std::uint32_t k = last_of_face_[role][face]; k != kNone; k = segments_[k].next[role]) {
     if (find(k) != part) continue;
     const ContactSegment& s = segments_[k];
     role == 0 ? piece.add_segment(s.start, s.end) : piece.add_segment(s.end, s.start);
     for (const ContactSegment::End& end : s.ends)
-      if (end.sign != 0 && end.role == role && end.edge == 1)
-        piece.add_far_point(end.sign, end.place);
+      if (end.sign != 0 && end.role == role)
+        piece.add_crossing(static_cast<unsigned>(end.edge), end.sign, end.place);
   }
-  if ((corners_inside(role, face) & 4u) != 0 && find(corner(role, face, 2)) == part)
-    piece.add_corner_inside();
+  for (unsigned k = piece.is_far() ? 0 : 2; k < 3; ++k)
+    if ((corners_inside(role, face) >> k & 1u) != 0 && find(corner(role, face, k)) == part)
+      piece.add_corner_inside(k);
   return piece;
 }
 

@@ -2,7 +2,9 @@
 // solid. All lengths in the pair's unit.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "libvpm/solid/triangle_crossing.h"
@@ -10,9 +12,13 @@
 
 namespace vpm {
 
-// The part of a triangle a, b, c inside is (w of c) T(a,b,c) - Σ s T(a,b,p) over the crossings p of
-// edge b-c, s = +1 where the edge enters, + Σ T(a,p,q) over the segments p-q, with T the oriented
-// triangle and w 1 if c is inside. The edges at a add nothing, since they pass through it.
+// The part of a triangle a, b, c inside is Σ T(o,p,q) over the segments p-q + Σ over the edges u-v
+// of (w of v) T(o,m,v) - (w of u) T(o,m,u) - Σ s T(o,m,p) over the edge's crossings p, s = +1 where
+// it enters, with T the oriented triangle, w 1 for corners inside, and any o in the plane and m on
+// the edge. From o = a, and m = b on edge b-c, only c and the crossings of b-c add anything. But
+// terms from a corner that is much farther away than the smaller solid is large would lose the
+// digits of their sum: then o and each m are the places next to the origin, which is in the smaller
+// solid.
 template <class Four>
 struct CrossedTriangleOf {
   std::uint32_t triangle = 0;
@@ -23,19 +29,60 @@ struct CrossedTriangleOf {
   static constexpr std::uint32_t kEnd = 0xffffffffu;
   std::uint32_t last_segment = kEnd, last_point = kEnd;
 
-  VPM_HD void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
-  VPM_HD void add_edge_crossing(const EdgeCrossing& crossing, Vec3 place) {
-    entries[static_cast<std::size_t>(crossing.edge)] += crossing.sign;
-    if (crossing.edge == 1) add_far_point(crossing.sign, place);
+  // Takes the corners and the normal before anything is added.
+  VPM_HD void set_corners(const std::array<Vec3, 3>& corners, Vec3 unit_normal) {
+    corner = corners, normal = unit_normal;
+    double most = 0;
+    for (const Vec3& c : corners)
+      most = std::max({most, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+    is_far_ = most > 1;
+    from_ = is_far_ ? dot(normal, corner[0]) * normal : corner[0];
   }
-  // Adds a crossing of edge b-c.
-  VPM_HD void add_far_point(int sign, Vec3 place) { add(-sign, corner[1], place); }
-  VPM_HD void add_corner_inside() { add(1, corner[1], corner[2]); }
-  // Integrals over the part, but for w of c: 1, x, and products of x.
+  // Whether a corner is farther away than the unit. None is where solids are alike in size.
+  VPM_HD bool is_far() const { return is_far_; }
+  VPM_HD Vec3 from() const { return from_; }  // o
+  // Calls take(sign, p, q) for the oriented triangles T(o,p,q) of a crossing of an edge, or of
+  // a corner inside.
+  template <class Take>
+  [[gnu::always_inline]] VPM_HD void for_crossing(unsigned edge, int sign, Vec3 place,
+                                                  const Take& take) const {
+    if (is_far_)
+      take(-sign, near_place(edge), place);
+    else if (edge == 1)
+      take(-sign, corner[1], place);
+  }
+  template <class Take>
+  [[gnu::always_inline]] VPM_HD void for_corner(unsigned k, const Take& take) const {
+    if (is_far_) {
+      take(1, near_place((k + 2) % 3), corner[k]);
+      take(-1, near_place(k), corner[k]);
+    } else if (k == 2) {
+      take(1, corner[1], corner[2]);
+    }
+  }
+
+  VPM_HD void add_segment(Vec3 p, Vec3 q) { add(1, p, q); }
+  // Adds a crossing of an edge, of sign as EdgeCrossing::sign.
+  VPM_HD void add_crossing(unsigned edge, int sign, Vec3 place) {
+    for (unsigned k = 0; k < 3; ++k) entries[k] += k == edge ? sign : 0;
+    for_crossing(edge, sign, place, [&](double s, Vec3 p, Vec3 q) { add(s, p, q); });
+  }
+  VPM_HD void add_corner_inside(unsigned k) {
+    for_corner(k, [&](double s, Vec3 p, Vec3 q) { add(s, p, q); });
+  }
+  // Adds the corners inside, after all crossings, which tell of the others what is known of c.
+  VPM_HD void add_corners_inside(bool is_last_inside) {
+    if (is_last_inside) add_corner_inside(2);
+    if (!is_far_) return;
+    const int last = is_last_inside ? 1 : 0;
+    if (last + entries[2] > 0) add_corner_inside(0);
+    if (last - entries[1] > 0) add_corner_inside(1);
+  }
+  // Integrals over the part: 1, x, and products of x.
   VPM_HD double area() const { return sums_.real(0); }
   VPM_HD Vec3 mean() const { return {sums_.real(1), sums_.real(2), sums_.real(3)}; }
-  // Returns the middle of the part, or the corner a where it has no area.
-  Vec3 middle() const { return area() > 0 ? mean() / area() : corner[0]; }
+  // Returns the middle of the part, or o where it has no area.
+  Vec3 middle() const { return area() > 0 ? mean() / area() : from_; }
   VPM_HD Products products() const {
     return {sums_.real(4), sums_.real(5), sums_.real(6),
             sums_.real(7), sums_.real(8), sums_.real(9)};
@@ -43,14 +90,22 @@ struct CrossedTriangleOf {
   ForceMoments moments() const { return flat_force_moments(normal, area(), mean(), products()); }
 
  private:
+  // Returns the place of an edge next to the origin.
+  VPM_HD Vec3 near_place(unsigned edge) const {
+    const Vec3 u = corner[edge], along = corner[(edge + 1) % 3] - u;
+    const double length2 = squared_norm(along);
+    return length2 > 0 ? u - quotient(dot(u, along), length2) * along : u;
+  }
   [[gnu::always_inline]] VPM_HD void add(double sign, Vec3 p, Vec3 q) {
-    const double size = sign * 0.5 * dot(cross(p - corner[0], q - corner[0]), normal);
-    const Vec3 mean = quotient(size, 3.0) * (corner[0] + p + q);
-    const auto [four, two] = mean_product_lanes<Four>(corner[0], p, q);
+    const double size = sign * 0.5 * dot(cross(p - from_, q - from_), normal);
+    const Vec3 mean = quotient(size, 3.0) * (from_ + p + q);
+    const auto [four, two] = mean_product_lanes<Four>(from_, p, q);
     sums_.add({Four{size, mean.x, mean.y, mean.z}, size * four, size * two});
   }
 
   WideSums<3, Four> sums_;
+  Vec3 from_;
+  bool is_far_ = false;
 };
 using CrossedTriangle = CrossedTriangleOf<FourNumbers>;
 

@@ -14,21 +14,23 @@ constexpr double kLeastTerm = 0x1p-200;
 
 }  // namespace
 
-// Adds the force on the part of a crossed triangle inside, which is made of oriented triangles from
-// its first corner (crossed_triangle.h): those of their parts that lie outside of it cancel out.
+// Adds the force on the part of a crossed triangle inside, which is made of oriented triangles
+// (crossed_triangle.h): those of their parts that lie outside of it cancel out.
 void SurfacePair::add_force_below_planes(std::size_t which, const CrossedTriangle& triangle) {
   Role& role = roles_[which];
   const auto& [a, b, c] = triangle.corner;
   const FacePlanes::Near near = role.other_planes.near(triangle.corner);
   // Scales the terms to 1 or so, since sums are rounded as such.
-  const double most =
-                   std::abs(role.other_planes.depth(a).value) + std::max(norm(b - a), norm(c - a)),
-               area = 0.5 * norm(cross(b - a, c - a)),
+  const bool is_far = triangle.is_far();  // then what is inside is of the size of the unit
+  const double most = is_far ? 1
+                             : std::abs(role.other_planes.depth(a).value) +
+                                   std::max(norm(b - a), norm(c - a)),
+               area = is_far ? 1 : 0.5 * norm(cross(b - a, c - a)),
                scale = std::ldexp(1.0, -std::ilogb(std::max(most * area, kLeastTerm)));
   WideSum volume;
   WideVec3 moment;
   const auto add = [&](double sign, Vec3 p, Vec3 q, std::uint32_t element) {
-    const auto found = near.of_triangle({a, p, q}, triangle.normal);
+    const auto found = near.of_triangle({triangle.from(), p, q}, triangle.normal);
     volume.add(scale * sign * found.integral.volume);
     moment.add(scale * sign * found.integral.moment);
     if (with_contacts_)
@@ -42,11 +44,15 @@ void SurfacePair::add_force_below_planes(std::size_t which, const CrossedTriangl
   for (std::uint32_t k = triangle.last_point; k != CrossedTriangle::kEnd;
        k = role.points[k].second) {
     const CutPoint& at = role.points[k].first;
-    if (at.edge == 1) add(-at.sign, b, at.place, at.segment);
+    triangle.for_crossing(static_cast<unsigned>(at.edge), at.sign, at.place,
+                          [&](double sign, Vec3 p, Vec3 q) { add(sign, p, q, at.segment); });
   }
-  if (is_inside(which, role.tree->triangles()[triangle.triangle][2])) {
-    const bool is_split = with_contacts_ && !is_one_contact_;
-    add(1, b, c, is_split ? parts_->corner(static_cast<std::uint32_t>(which), face_, 2) : 0);
+  const bool is_split = with_contacts_ && !is_one_contact_;
+  for (unsigned k = is_far ? 0 : 2; k < 3; ++k) {
+    if (!is_inside(which, role.tree->triangles()[triangle.triangle][k])) continue;
+    const std::uint32_t element =
+        is_split ? parts_->corner(static_cast<std::uint32_t>(which), face_, k) : 0;
+    triangle.for_corner(k, [&](double sign, Vec3 p, Vec3 q) { add(sign, p, q, element); });
   }
   const ForceAndTorque f =
       force_on_face({volume.real() / scale, moment.real() / scale}, triangle.normal);

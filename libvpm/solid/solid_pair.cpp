@@ -22,10 +22,11 @@ constexpr Vec3 kTurns[OrderedPair::kAttempts]{{.37, .21, -.43},  {.25, -.49, .31
                                               {-.23, -.35, .47}, {.15, .39, -.27}};
 
 // Returns a motion of about the jitter: a rotation by less than 2^-36 is one of 1 and small
-// entries, exact in double.
-Pose small_motion(int attempt, double reach) {
+// entries, exact in double. Solids meet within one reach of the first's centre: a second one that
+// is much larger turns by less, so that its far places move by no more than a few of these.
+Pose small_motion(int attempt, double reach, double other_reach) {
   const double size = SolidSurface::kJitter;
-  const Vec3 w = size * kTurns[attempt];
+  const Vec3 w = std::min(1.0, kMuchLarger * reach / other_reach) * size * kTurns[attempt];
   return {{{1, -w.z, w.y}, {w.z, 1, -w.x}, {-w.y, w.x, 1}}, size * reach * kShifts[attempt]};
 }
 
@@ -46,13 +47,13 @@ Pose about_center(const Pose& pose, const SolidSurface& solid) {
   return {pose.rotation, pose * solid.center_of_mass()};
 }
 
-// Returns the cure where solids are so unlike in size that rounding is to blame.
-std::string to_cut_down(double unlikeness) {
+[[noreturn]] void refuse_unlike(double unlikeness) {
   char text[160];
   std::snprintf(text, sizeof text,
-                "one solid is %.3g times as large as the other: cut it down to what is near",
-                unlikeness);
-  return text;
+                "one solid is %.3g times as large as the other: up to %.0f times what they share "
+                "is told to a millionth of the smaller",
+                unlikeness, SolidPair::kMostUnlike);
+  refuse(text, {}, "cut it down to what is near");
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ bool OrderedPair::may_meet(const Place& place) const {
 }
 
 Pose OrderedPair::moved(const Place& place, int attempt) const {
-  return place.relative * small_motion(attempt, first_->reach());
+  return place.relative * small_motion(attempt, first_->reach(), second_->reach());
 }
 
 double OrderedPair::closure(const std::array<InnerSurface, 2>& inner) const {
@@ -96,17 +97,13 @@ double OrderedPair::unlikeness() const {
 }
 
 void OrderedPair::refuse_unclosed(double gap) const {
-  constexpr double kRounds = 100;  // so unlike solids may miss to close by rounding alone
   char text[160];
   std::snprintf(
       text, sizeof text,
       "the boundary of what the two solids share does not close: its area vectors miss by "
       "%.1e of the smaller reach squared",
       gap);
-  refuse(text, {},
-         unlikeness() > kRounds
-             ? to_cut_down(unlikeness())
-             : "check both meshes for slits and folds; one that is repaired by voxels closes");
+  refuse(text, {}, "check both meshes for slits and folds; one that is repaired by voxels closes");
 }
 
 double OrderedPair::volume_of_touch(double area, const Place& place) const {
@@ -116,7 +113,8 @@ double OrderedPair::volume_of_touch(double area, const Place& place) const {
     far = std::max(far, norm(center));
   const auto [less, more] = std::minmax({first_->reach(), second_->reach()});
   constexpr double kRounding = 0x1p-52;
-  return depth_of_touch(more, far) * area + kRounding * more * more * less;
+  const double summed = std::min(more, unit_for(less, more));  // no farther are places in sums
+  return depth_of_touch(more, far) * area + kRounding * summed * summed * less;
 }
 
 SharedSolid OrderedPair::shared_of(const std::array<InnerSurface, 2>& inner) const {
@@ -187,8 +185,7 @@ SharedSolid SolidPair::closed(const OrderedPair::Place& place, bool with_force,
     const SurfacePairSums found =
         surfaces_.run(pair_.moved(place, attempt), with_force, with_contacts);
     if (pair_.unlikeness() > kMostUnlike && found.crossings + found.whole > 0)
-      refuse("doubles do not tell what solids of so unlike sizes share", {},
-             to_cut_down(pair_.unlikeness()));
+      refuse_unlike(pair_.unlikeness());
     const double gap = pair_.closure(found.inner);
     worst = std::max(worst, gap);
     if (found.undecided > 0 || !(gap <= kMaxClosure)) continue;

@@ -112,9 +112,10 @@ class SolidPair {
 
   // Largest SharedSolid::closure that is given.
   static constexpr double kMaxClosure = 1e-8;
-  // Largest reach of one solid in reaches of the other at which sums in units of the larger resolve
-  // the smaller, to a millionth of its volume.
-  static constexpr double kMostUnlike = 0x1p13;
+  // Largest reach of one solid in reaches of the other. The jitter moves faces of the larger by
+  // half of kJitter of its reach, which is then .87e-6 of the volume of a cube that a whole face of
+  // the smaller is wide; of thin solids it is more, as their area is of their volume.
+  static constexpr double kMostUnlike = 0x1p17;
 
  private:
   SharedSolid closed(const OrderedPair::Place& place, bool with_force, bool with_contacts);

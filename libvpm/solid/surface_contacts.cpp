@@ -174,18 +174,18 @@ void SurfacePair::note_force_of_split_cell(std::size_t which, const DepthCell& c
   for (const CutSegment& s : cell.segments) parts.push_back(parts_->find(s.segment));
   std::ranges::sort(parts);
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-  const std::uint32_t at_corner =
-      cell.is_inside[2] != 0 ? parts_->find(parts_->element_at(role, face_, cell.corner[2]))
-                             : kNone;
   for (const std::uint32_t part : parts) {
     CrossedTriangle of_part;
-    of_part.corner = cell.corner, of_part.normal = normal;
+    of_part.set_corners(cell.corner, normal);
     for (const CutSegment& s : cell.segments)
       if (parts_->find(s.segment) == part) of_part.add_segment(s.start, s.end);
     for (const CutPoint& point : cell.points)
-      if (point.edge == 1 && part_at(point.place) == part)
-        of_part.add_far_point(point.sign, point.place);
-    if (at_corner == part) of_part.add_corner_inside();
+      if (part_at(point.place) == part)
+        of_part.add_crossing(static_cast<unsigned>(point.edge), point.sign, point.place);
+    for (unsigned k = of_part.is_far() ? 0 : 2; k < 3; ++k)
+      if (cell.is_inside[k] != 0 &&
+          parts_->find(parts_->element_at(role, face_, cell.corner[k])) == part)
+        of_part.add_corner_inside(k);
     note_cut_force(which, part, part_of(piece, of_part), {}, 0);
   }
 }
@@ -250,15 +250,7 @@ void SurfacePair::add_pieces(std::uint32_t largest) {
   for (const auto& [role, child, element] : whole_pieces_) {
     const std::uint32_t contact = number_of_[parts_->find(element)];
     if (contact == largest) continue;
-    const SurfaceTree& tree = *roles_[role].tree;
-    SurfaceMoments moments;
-    if ((child & kLeaf) != 0) {
-      const auto [a, b, c] = tree.corners(child & ~kLeaf);
-      moments = triangle_moments(a, b, c);
-    } else {
-      moments = tree.moments(child);
-    }
-    contact_sums_[contact][role].whole.add(scaled(moments, per_unit_));
+    add_moments(roles_[role], child, contact_sums_[contact][role]);
   }
   const auto add_flat = [&](std::uint32_t role, std::uint32_t part, const CrossedTriangle& piece) {
     contact_sums_[number_of_[part]][role].cut.add(

@@ -356,7 +356,7 @@ class SurfacePair::CellVisitor {
       return {area, {depth * area, area * (depth * middle + slope)}, sampled, is_large(cell)};
     }
     CrossedTriangle part;
-    part.corner = cell.corner, part.normal = normal_;
+    part.set_corners(cell.corner, normal_);
     pair_.add_cuts(cell, part);
     const double area = part.area();
     if (!(area > 0)) return {};  // rounding
@@ -431,8 +431,9 @@ void SurfacePair::add_force_of_cells(std::size_t which, const DepthCell& cell, V
 void SurfacePair::add_cuts(const DepthCell& cell, CrossedTriangle& part) {
   for (const CutSegment& s : cell.segments) part.add_segment(s.start, s.end);
   for (const CutPoint& point : cell.points)
-    if (point.edge == 1) part.add_far_point(point.sign, point.place);
-  if (cell.is_inside[2] != 0) part.add_corner_inside();
+    part.add_crossing(static_cast<unsigned>(point.edge), point.sign, point.place);
+  for (unsigned k = 0; k < 3; ++k)
+    if (cell.is_inside[k] != 0) part.add_corner_inside(k);
 }
 
 void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& cell, Vec3 normal,
@@ -445,7 +446,7 @@ void SurfacePair::add_force_of_small_cell(std::size_t which, const DepthCell& ce
                       bent(which, cell, depth_at(which, (a + b + c) / 3), (a + b + c) / 3), weight);
   } else {
     CrossedTriangle part;
-    part.corner = cell.corner, part.normal = normal;
+    part.set_corners(cell.corner, normal);
     add_cuts(cell, part);
     const double area = part.area();
     if (!(area > 0)) return;  // rounding

@@ -27,6 +27,7 @@ SurfacePair::SurfacePair(const SolidSurface& first, const SolidSurface& second)
     Role& role = roles_[k];
     role.solid = k == 0 ? &first : &second;
     role.tree = &role.solid->tree();
+    role.is_summed_by_triangles = k == 1 && outgrows(second.reach(), unit_);
     set_sizes(role, k == 0 ? second : first);
     const std::size_t triangles = role.tree->triangles().size();
     role.crossed_stamp.assign(triangles, 0);
@@ -159,11 +160,11 @@ void SurfacePair::meet(CandidatePair places, const PairSigns& signs, TriangleCro
   of_b.add_segment(end, start);
   for (int k = 0; k < crossing.first_count; ++k) {
     const EdgeCrossing& at = crossing.of_first[static_cast<std::size_t>(k)];
-    of_a.add_edge_crossing(at, per_unit_ * at.place);
+    of_a.add_crossing(static_cast<unsigned>(at.edge), at.sign, per_unit_ * at.place);
   }
   for (int k = 0; k < crossing.second_count; ++k) {
     const EdgeCrossing& at = crossing.of_second[static_cast<std::size_t>(k)];
-    of_b.add_edge_crossing(at, per_unit_ * at.place);
+    of_b.add_crossing(static_cast<unsigned>(at.edge), at.sign, per_unit_ * at.place);
   }
   if (with_contacts_)
     parts_->add({roles_[0].crossed_place[first_triangle], roles_[1].crossed_place[second_triangle]},
@@ -200,8 +201,8 @@ CrossedTriangle& SurfacePair::crossed(Role& role, std::uint32_t triangle,
     role.crossed_place[triangle] = static_cast<std::uint32_t>(role.crossed.size());
     CrossedTriangle& added = role.crossed.emplace_back();
     added.triangle = triangle;
-    for (std::size_t k = 0; k < 3; ++k) added.corner[k] = per_unit_ * at.corner[k];
-    added.normal = normalized_or_zero(at.normal);
+    const auto& [a, b, c] = at.corner;
+    added.set_corners({per_unit_ * a, per_unit_ * b, per_unit_ * c}, normalized_or_zero(at.normal));
   }
   return role.crossed[role.crossed_place[triangle]];
 }
@@ -240,8 +241,7 @@ VPM_AVX2_CLONES
 void SurfacePair::add_crossed(std::size_t which) {
   Role& role = roles_[which];
   for (CrossedTriangle& triangle : role.crossed) {
-    if (is_inside(which, role.tree->triangles()[triangle.triangle][2]))
-      triangle.add_corner_inside();
+    triangle.add_corners_inside(is_inside(which, role.tree->triangles()[triangle.triangle][2]));
     const double area = triangle.area();
     role.sums.area.add(area);
     role.sums.cut.add(flat_moments(triangle.normal, area, triangle.mean(), triangle.products()));
@@ -266,15 +266,15 @@ void SurfacePair::add_whole(std::size_t which) {
         continue;
       }
       const SurfaceTree::Summary& summary = tree.summaries()[child];
-      if (role.node_stamp[child] == stamp_ || !summary.is_connected) {
+      if (role.node_stamp[child] == stamp_ || !summary.is_connected ||
+          role.is_summed_by_triangles) {
         pending_.push_back(child);
         continue;
       }
       if (!is_inside(which, tree.triangles()[summary.first][0])) continue;
-      const SurfaceMoments moments = tree.moments(child);
       const bool has_patches = !tree.patches().empty();
-      const double area = has_patches ? tree.patches()[child].area : norm(moments.area);
-      role.sums.whole.add(scaled(moments, per_unit_));
+      const double area = has_patches ? tree.patches()[child].area : norm(tree.moments(child).area);
+      add_moments(role, child, role.sums);
       role.sums.area.add(per_unit_ * per_unit_ * area);
       note_whole(which, child);
     }
@@ -292,10 +292,18 @@ void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) 
   for (const std::uint32_t v : corners) role.corner_stamp[v] = stamp_, role.is_inside[v] = inside;
   if (!inside) return;
   const auto [a, b, c] = role.tree->corners(triangle);
-  const SurfaceMoments moments = triangle_moments(a, b, c);
-  role.sums.whole.add(scaled(moments, per_unit_));
-  role.sums.area.add(per_unit_ * per_unit_ * norm(moments.area));
+  add_moments(role, triangle | kLeaf, role.sums);
+  role.sums.area.add(per_unit_ * per_unit_ * norm(0.5 * cross(b - a, c - a)));
   note_whole(which, triangle | kLeaf);
+}
+
+// Adds the moments of all below a node, or of a triangle, to sums of the role.
+void SurfacePair::add_moments(const Role& role, std::uint32_t child, RoleSums& sums) const {
+  if ((child & kLeaf) == 0) return sums.whole.add(scaled(role.tree->moments(child), per_unit_));
+  const std::uint32_t triangle = child & ~kLeaf;
+  const bool is_placed = role.is_summed_by_triangles;
+  const auto [a, b, c] = is_placed ? placed(role, triangle).corner : role.tree->corners(triangle);
+  (is_placed ? sums.cut : sums.whole).add(scaled(triangle_moments(a, b, c), per_unit_));
 }
 
 // Notes what lies inside as a whole, for its force and its contact.

@@ -83,8 +83,8 @@ class SurfacePair {
  private:
   static constexpr std::uint32_t kLeaf = SurfaceTree::kLeaf, kNone = SurfaceTree::kNone;
 
-  // Sums over crossed triangles in the first's frame, over others in the surface's own; in the
-  // unit.
+  // Sums over crossed triangles in the first's frame, over others in the surface's own (but moments
+  // of solids that are summed by triangles in the first's); in the unit.
   struct RoleSums {
     WideMoments cut, whole;
     WideWrench cut_wrench, whole_wrench;  // times wrench_scale_
@@ -145,6 +145,7 @@ class SurfacePair {
   struct Role {
     const SolidSurface* solid = nullptr;
     const SurfaceTree* tree = nullptr;
+    bool is_summed_by_triangles = false;  // as outgrows() tells
     // For forces: how many times as large errors may be here as on the other surface, whose force
     // counts more; and the largest pieces, m: nodes, cells, crossed triangles as a whole, and cells
     // that may stay for what samples tell, however deep they are.
@@ -177,6 +178,7 @@ class SurfacePair {
   void add_crossed(std::size_t role);
   void add_whole(std::size_t role);
   void add_whole_triangle(std::size_t role, std::uint32_t triangle);
+  void add_moments(const Role& role, std::uint32_t child, RoleSums& sums) const;
   void note_cut(std::size_t role, CrossedTriangle& triangle, const CrossedTriangle& other,
                 CutSegment segment, std::span<const EdgeCrossing> crossings);
   SurfaceMoments moments_of(const Role& role, const RoleSums& sums) const;

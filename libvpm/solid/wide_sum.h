@@ -1,6 +1,7 @@
 // Sums of doubles that do not depend on the order of their terms.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -8,12 +9,21 @@
 
 namespace vpm {
 
+// Reaches of the smaller solid from which on a larger one is measured only where they can meet.
+inline constexpr double kMuchLarger = 16;
+
 // Returns the unit in which a pair of solids is summed, m: a power of two that is larger than any
-// coordinate where they can meet, in the first's frame.
+// coordinate where they can meet, in the first's frame, and than those of a second one that is not
+// much larger than the first, which must not have the larger reach.
 inline double unit_for(double reach, double other_reach) {
   int exponent = 0;
-  std::frexp(reach + 2 * other_reach, &exponent);
+  std::frexp(reach + 2 * std::min(other_reach, kMuchLarger * reach), &exponent);
   return std::ldexp(1.0, exponent);
+}
+// Returns whether the second solid is so large that what is inside as a whole is summed by
+// triangles, about the first's centre: about its own, digits would be lost.
+inline bool outgrows(double other_reach, double unit) {
+  return 2 * other_reach > unit;
 }
 
 // Splits each term at 2^-34 and 2^-70, by rounding against a large constant (Demmel and Nguyen,

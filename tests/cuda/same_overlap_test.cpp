@@ -104,6 +104,25 @@ TEST_F(SameOverlap, AtRandomPoses) {
   EXPECT_GE(met, 8 * poses.size());
 }
 
+// On a floor, whose triangles are far larger than the other solid, on fine ground, and around it.
+TEST_F(SameOverlap, OfASmallSolidOnALargeOne) {
+  const Surface small = surface_of(make_box(.1, .08, .06));
+  const double edge = 800;
+  for (const Solid& solid : {make_box(edge, edge, .1 * edge), make_torus(3, 1, 120, 60)}) {
+    const Surface large = surface_of(solid);
+    std::vector<Poses> poses;
+    for (const auto& [stands, beside] : random_poses(testing::effort(30))) {
+      const Vec3 on = solid.vertices.size() == 8 ? Vec3{.31 * edge, -.2 * edge, .05 * edge}
+                                                 : solid.vertices[poses.size()];
+      const Pose from{beside.rotation, .3 * beside.translation + on};
+      poses.push_back({stands * from, stands});
+    }
+    const Told told = expect_same(small, large, poses);
+    EXPECT_EQ(told.left, 0U);
+    EXPECT_GE(told.met, poses.size() / 2);
+  }
+}
+
 TEST_F(SameOverlap, OfEnclosedFlushAndCoincidentSolids) {
   const Surface box = surface_of(make_box(.5, .4, .3)), ball = surface_of(make_icosphere(.05, 1)),
                 torus = surface_of(make_torus(.3, .1, 20, 10));

@@ -263,7 +263,7 @@ COMMANDS = [
      f"{TOOL} --tool single.vpmg --poses poses.txt"),
     (f"{TOOL} --poses poses.txt --coherent --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --coherent", WALL),
-    (f"sed '3,10s/1/1e5/g' cube.off > out.off; {ASK} --solid out.off", "cut it down to what is near", f"{ASK} --solid cube.off", .0015, 1e-9),
+    (f"sed '3,10s/1/1e7/g' cube.off > out.off; {ASK} --solid out.off", "cut it down to what is near", f"{ASK} --solid cube.off", .0015, 1e-9),
     (f"{ASK} --solid small.off --measure paper", r"give its tool model \(.vpmg\) instead", f"{ASK} --solid small.vpmg --measure paper"),
     (f"{TOOL} --poses poses.txt --contacts --measure paper", "leave the other measure or device out",
      f"{TOOL} --poses poses.txt --contacts", WALL),

@@ -168,7 +168,8 @@ class PairsOnDevice : public DevicePairs {
         places_.try_emplace({job.first, job.second}, static_cast<std::uint32_t>(pairs_.size()));
     if (is_new) {
       const SurfaceView &first = copies_[job.first].view(), &second = copies_[job.second].view();
-      pairs_.push_back({{first, second}, 1 / unit_for(first.reach, second.reach)});
+      const double unit = unit_for(first.reach, second.reach);
+      pairs_.push_back({{first, second}, 1 / unit, outgrows(second.reach, unit)});
     }
     return at->second;
   }

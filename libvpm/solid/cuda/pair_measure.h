@@ -13,7 +13,8 @@ namespace vpm::cuda {
 
 struct PairView {
   SurfaceView surface[2];
-  double per_unit = 1;  // 1/m: what is summed is in the pair's unit
+  double per_unit = 1;        // 1/m: what is summed is in the pair's unit
+  bool by_triangles = false;  // of the second surface, as outgrows() tells
 };
 
 // Segment that two triangles share, in the pair's unit. Each end lies on an edge of one of them:
@@ -458,18 +459,19 @@ class PairMeasure {
   __device__ SurfaceMoments moments_of_crossed(unsigned role, std::uint32_t triangle) const {
     const PlacedTriangle at = placed(role, triangle);
     CrossedTriangleOf<FourNumbers> part;
-    for (std::size_t k = 0; k < 3; ++k) part.corner[k] = pair_.per_unit * at.corner[k];
-    part.normal = normalized_or_zero(at.normal);
+    const auto& [a, b, c] = at.corner;
+    part.set_corners({pair_.per_unit * a, pair_.per_unit * b, pair_.per_unit * c},
+                     normalized_or_zero(at.normal));
     for (std::uint32_t s = last_segment(role, triangle); s != 0;) {
       const SharedSegment segment = room_.segments[s - 1];
       part.add_segment(role == 0 ? segment.start : segment.end,
                        role == 0 ? segment.end : segment.start);
       for_edges(role, segment, [&](unsigned edge, int sign, bool is_start) {
-        if (edge == 1) part.add_far_point(sign, is_start ? segment.start : segment.end);
+        part.add_crossing(edge, sign, is_start ? segment.start : segment.end);
       });
       s = segment.next[role];
     }
-    if (is_marked(role, inside, at.index[2])) part.add_corner_inside();
+    part.add_corners_inside(is_marked(role, inside, at.index[2]));
     return flat_moments(part.normal, part.area(), part.mean(), part.products());
   }
 
@@ -526,7 +528,8 @@ class PairMeasure {
     if (!may_meet(bounds, all, state_.from_other[role])) return Kind::nothing;
     if ((child & kLeaf) != 0)
       return last_segment(role, child & ~kLeaf) == 0 ? Kind::piece : Kind::nothing;
-    const bool is_open = own.probe[child] == kNone || is_marked(role, crossed_node, child);
+    const bool is_open =
+        own.probe[child] == kNone || is_marked(role, crossed_node, child) || is_by_triangles(role);
     return is_open ? Kind::node : Kind::piece;
   }
   // Returns the vertex that tells for a piece: of a triangle's one whose side is known, if any is.
@@ -553,14 +556,19 @@ class PairMeasure {
       const bool counts = k < count && is_marked(role, inside, probe_of(role, piece & ~kSecond));
       SurfaceMoments moments;
       if (counts) moments = scaled(moments_of_whole(role, piece & ~kSecond), pair_.per_unit);
-      add(moments, counts, role, whole_);
+      add(moments, counts && !is_by_triangles(role), role, whole_);
+      if (pair_.by_triangles) add(moments, counts && role == 1, role, cut_);
     }
   }
+  __device__ bool is_by_triangles(unsigned role) const { return role == 1 && pair_.by_triangles; }
   __device__ SurfaceMoments moments_of_whole(unsigned role, std::uint32_t child) const {
     const SurfaceView& own = surface(role);
     if ((child & kLeaf) == 0) return own.moments[child];
-    const auto [a, b, c] = own.triangles[child & ~kLeaf];
-    return triangle_moments(own.vertices[a], own.vertices[b], own.vertices[c]);
+    const std::uint32_t triangle = child & ~kLeaf;
+    const auto [i, j, k] = own.triangles[triangle];
+    std::array<Vec3, 3> at{own.vertices[i], own.vertices[j], own.vertices[k]};
+    if (is_by_triangles(role)) at = placed(role, triangle).corner;
+    return triangle_moments(at[0], at[1], at[2]);
   }
 
   // --- Sums ---
