@@ -237,11 +237,11 @@ void check_shared(const std::vector<Reading>& readings, const std::vector<std::s
   const auto least = std::ranges::min_element(shared);
   if (*least >= kFewReadings) return;
   const std::size_t camera = names[static_cast<std::size_t>(least - shared.begin())];
-  refuse("image " + std::to_string(camera + 1) + " of the list shows hardly a surface that " +
-             "another one shows too, within " +
+  refuse("it shows hardly a surface that another one shows too, within " +
              std::to_string(static_cast<int>(100 * kSameSurface)) +
              " % of the depth: nothing tells where its camera is",
-         {}, "leave it out, or calibrate its camera");
+         "image " + std::to_string(camera + 1) + " of the list",
+         "leave it out, or calibrate its camera");
 }
 
 // Returns the smallest deviation that pixels of images resolve, per depth.

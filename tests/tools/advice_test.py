@@ -71,6 +71,7 @@ UNTRIED = [
         "times and --tool", "times: give one path for all tools, or one for each",
         "--poses has several values; leave all but one out: only several --tool with --frames have a path each",
         "--resume compares files with those of the run before: name one for --", ".part: --resume goes on after them",
+        "has ended; --force makes it anew",
         "give times to both, or to none", "give each a pose for every step, or times", "give paths of one recording",
         "give them with the tool's", "give every pose of a path as many, or none", "give them in",
     ]),

@@ -91,6 +91,12 @@ void KeptLines::check(const std::string& path, Leftover leftover) {
                "them, or --force to begin anew");
 }
 
+bool KeptLines::are_finished(const std::string& path, Leftover leftover) {
+  std::error_code fault;
+  return leftover == Leftover::resume && !file::descriptor_of(path) &&
+         fs::is_regular_file(path, fault) && !fs::exists(end_of_links(path) + ".part", fault);
+}
+
 KeptLines::KeptLines(const std::string& path, const Json& run, Leftover leftover)
     : target_(end_of_links(path)), part_(target_ + ".part"), told_(part_ + ".json") {
   open();

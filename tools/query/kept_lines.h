@@ -27,6 +27,8 @@ class KeptLines {
   static std::vector<std::string> beside(const std::string& path);
   // Throws Error(invalid_argument) if there are lines of an earlier run that are refused.
   static void check(const std::string& path, Leftover leftover);
+  // True if the run that should go on has ended: the file has its name, and no lines are left.
+  static bool are_finished(const std::string& path, Leftover leftover);
 
   // Opens NAME.part. `run` maps names to all that lines depend on. With Leftover::resume keeps the
   // whole lines that are there. Throws Error(invalid_argument) if they are of another run, and

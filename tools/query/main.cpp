@@ -7,6 +7,7 @@
 #include "tools/common/list_run.h"
 #include "tools/common/list_worker.h"
 #include "tools/query/arguments.h"
+#include "tools/query/kept_lines.h"
 #include "tools/query/mode.h"
 #include "tools/query/pairs.h"
 
@@ -16,6 +17,10 @@ namespace {
 void run(Program& program, const Arguments& arguments) {
   const Mode mode = mode_of(arguments);
   check_options(program.app(), mode);
+  if (!program.common().force &&
+      KeptLines::are_finished(arguments.output, leftover_of(arguments, program.common())))
+    return program.note("nothing is left to do, since the run of " + arguments.output +
+                        " has ended; --force makes it anew");
   check_names(arguments, program.common());
   if (mode == Mode::pairs) return run_pairs(program, arguments);
   program.name_no_more({"--unit", "--repair"});

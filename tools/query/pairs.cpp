@@ -135,7 +135,7 @@ std::size_t say_refusals(const Program& program, const Assembly& assembly,
 void run_pairs(Program& program, const Arguments& a) {
   // Most assemblies take less time than a device to begin, so one must be named.
   const Device device = program.common().device == "auto" ? Device{} : program.device();
-  Assembly assembly = read_assembly(a.pairs);
+  Assembly assembly = read_assembly(program, a.pairs);
   if (!a.poses.empty()) place_parts(assembly, a.poses.front());
   note_deviation(program, assembly.path, assembly.largest_deviation);
   const std::string unit = unit_of(a, assembly);

@@ -186,7 +186,22 @@ bool is_part(const fs::directory_entry& entry) {
   return has_mesh_ending(name) || file::in_lower_case(entry.path().extension().string()) == ".vpmg";
 }
 
-Assembly listed(const std::string& path) {
+// Returns how many parts stand in folders of the folder that are not hidden.
+std::size_t parts_below(const std::string& path) {
+  std::size_t count = 0;
+  std::error_code fault;
+  fs::recursive_directory_iterator entry(path, fs::directory_options::skip_permission_denied,
+                                         fault);
+  for (; !fault && entry != fs::recursive_directory_iterator(); entry.increment(fault)) {
+    if (entry->path().filename().string().starts_with('.'))
+      entry.disable_recursion_pending();
+    else if (entry.depth() > 0 && is_part(*entry))
+      ++count;
+  }
+  return count;
+}
+
+Assembly listed(const Program& program, const std::string& path) {
   Assembly assembly{.path = path, .unit = {}, .parts = {}, .allowed = {}};
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, fault))
@@ -194,6 +209,10 @@ Assembly listed(const std::string& path) {
       assembly.parts.push_back({entry.path().filename().string(), entry.path().string(), {}, {}});
   if (fault) refuse("cannot read " + path + ": " + fault.message());
   std::ranges::sort(assembly.parts, {}, &AssemblyPart::name);
+  if (const std::size_t below = parts_below(path); below > 0)
+    program.note(path + ": " + std::to_string(below) +
+                 (below == 1 ? " part in its folders is" : " parts in its folders are") +
+                 " left out, since a folder's own files are its parts");
   return assembly;
 }
 
@@ -209,12 +228,12 @@ const AllowedPair* Assembly::rule_for(const AssemblyPart& a, const AssemblyPart&
   return rule == allowed.end() ? nullptr : &*rule;
 }
 
-Assembly read_assembly(const std::string& path) {
+Assembly read_assembly(const Program& program, const std::string& path) {
   std::error_code fault;
   if (path != "-" && is_mesh_file(path))
     refuse_usage("--pairs " + path +
                  " is a mesh: give the folder of all parts, or a description (assembly.json)");
-  Assembly assembly = fs::is_directory(path, fault) ? listed(path) : described(path);
+  Assembly assembly = fs::is_directory(path, fault) ? listed(program, path) : described(path);
   if (assembly.parts.size() < 2)
     refuse(assembly.parts.empty() ? "there is no part" : "there is one part only", assembly.path,
            "an assembly has two closed meshes (.stl, .obj, .ply, …) or models (.vpmg) at least, "

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/program.h"
+
 namespace vpm::tools {
 
 // A part; lengths are in the assembly's unit.
@@ -41,7 +43,8 @@ struct Assembly {
 // ordered by name. Files of a description are beside it. Throws Error(refused), naming the place,
 // for keys that are not known, values of another kind, names given twice or of no part, and fewer
 // than two parts; Error(invalid_argument) for a path that is a mesh.
-Assembly read_assembly(const std::string& path);
+// Notes how many parts stand in folders of a folder, which are not read.
+Assembly read_assembly(const Program& program, const std::string& path);
 
 // Moves the parts whose names are the `id` of the poses in a file. Throws Error(refused), naming
 // the line, for what is no pose, and for an `id` that is missing, given twice, or of no part.

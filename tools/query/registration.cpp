@@ -32,6 +32,19 @@ std::string text_of(const Pose& pose) {
   return text + decimals(q.w, 7);
 }
 
+// Returns what register_cameras() does. Errors that name an image by its number name it as given.
+Registration registered_by_name(const std::vector<std::string>& names,
+                                const std::vector<Body>& images) {
+  try {
+    return register_cameras(images);
+  } catch (const Error& fault) {
+    std::string where;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (fault.where() == "image " + std::to_string(k + 1) + " of the list") where = names[k];
+    throw Error(fault.kind(), "--register: " + fault.problem(), where, fault.hint());
+  }
+}
+
 }  // namespace
 
 Registration registered(const Program& program, const std::vector<std::string>& names,
@@ -40,7 +53,7 @@ Registration registered(const Program& program, const std::vector<std::string>& 
     program.note("--register: no camera is moved, since one is far from where its pose tells");
     return {told};
   }
-  const Registration found = naming("--register", [&] { return register_cameras(images); });
+  const Registration found = registered_by_name(names, images);
   constexpr double kMillimetre = 1e3, kDegree = 180 / 3.14159265358979323846;
   char text[300];
   std::snprintf(text, sizeof text,

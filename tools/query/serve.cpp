@@ -3,6 +3,7 @@
 #include <vpm/error.h>
 #include <vpm/level_query.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -12,6 +13,7 @@
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
+#include "libvpm/file/json_text.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/import_cloud.h"
@@ -19,6 +21,7 @@
 #include "libvpm/recording/pose_numbers.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
+#include "tools/common/nearest_word.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
@@ -39,14 +42,33 @@ constexpr const char* kRequest =
 // Returns the request of a line. Throws Error(refused) if it is none.
 Json request_of(const std::string& line) {
   Json request = json_or_print(line);
-  if (request.is_discarded()) refuse("not JSON", {}, kRequest);
+  if (request.is_discarded()) {
+    try {
+      file::parse_json(line);
+    } catch (const Error& fault) {
+      // The line of the place is always the first.
+      const bool is_json = !fault.problem().starts_with("not JSON");
+      refuse(is_json ? fault.problem() : "not JSON", {}, is_json ? fault.hint() : kRequest);
+    }
+  }
   if (request.is_array()) return {{"pose", std::move(request)}};
   if (!request.is_object()) refuse("a request is an object of JSON", {}, kRequest);
   return request;
 }
 
-// Throws Error(refused) for what no answer is known to.
+// Throws Error(refused) for what no answer is known to: a key that is none of a request's, of a
+// pose's (pose_json.h), or of a message of ROS.
 void check(const Json& request) {
+  static const std::vector<std::string> kKnown{
+      "id",       "cloud",         "camera_pose", "solids",   "pose",      "tool",
+      "time",     "timestamp",     "stamp",       "t",        "matrix",    "transform_matrix",
+      "position", "orientation",   "translation", "rotation", "transform", "header",
+      "frame_id", "child_frame_id"};
+  for (const auto& [key, value] : request.items()) {
+    if (std::ranges::count(kKnown, key) > 0) continue;
+    const std::string guess = guess_of_word(key, kKnown);
+    refuse("there is no key '" + file::shown(key) + "'", {}, guess.empty() ? kRequest : guess);
+  }
   if (request.contains("camera_pose") && !request.contains("cloud"))
     refuse("a camera's pose without its image", {}, "give \"cloud\" beside it");
 }

@@ -30,7 +30,7 @@ $ vpm-normals wall.png -o near.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0
 $ vpm-query --tool cube.vpmg --cloud near.vpmc --cloud front.vpmc --pose 0,0,0.95,0,0,0,1 --register --quiet | cmp - moved.jsonl; vpm-query --tool cube.vpmg --cloud near.vpmc --cloud front.vpmc --pose 0,0,0.95,0,0,0,1 --register --dump-config > call.json && $VALIDATE config.vpm-query call.json; python3 -c "import json; print(round(json.load(open('moved.jsonl'))['volume_fraction'], 2))"
 0.24
 $ vpm-query --tool cube.vpmg --cloud front.vpmc --cloud back.vpmc --poses poses.txt --register; vpm-query --tool cube.vpmg --cloud front.vpmc --poses poses.txt --register
-2> vpm-query: error: --register: image 1 of the list shows hardly a surface that another one shows too, within 5 % of the depth: nothing tells where its camera is; leave it out, or calibrate its camera
+2> vpm-query: error: front.vpmc: --register: it shows hardly a surface that another one shows too, within 5 % of the depth: nothing tells where its camera is; leave it out, or calibrate its camera
 2> vpm-query: error: --register makes the images of cameras agree: give several --cloud
 [2]
 

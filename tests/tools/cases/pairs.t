@@ -128,6 +128,10 @@ $ mkdir empty; vpm-query --pairs empty; cp cube.off empty; vpm-query --pairs emp
 2> vpm-query: error: cannot read gone: No such file or directory
 2> vpm-query: error: --pairs cube.off is a mesh: give the folder of all parts, or a description (assembly.json)
 [2]
+$ mkdir -p deep/a/b deep/.old; cp cube.off deep; cp cube.off deep/other.off; cp cube.off deep/a; cp cube.off deep/a/b; cp cube.off deep/.old; echo x > deep/a/notes.txt; vpm-query --pairs deep --quiet | wc -l; vpm-query --pairs deep > pairs.jsonl
+1
+2> vpm-query: note: deep: 2 parts in its folders are left out, since a folder's own files are its parts
+2> vpm-query: note: 2 parts, 1 pair shares volume
 $ for l in '{"id": "hubb", "pose": [0, 0, 0, 0, 0, 0, 1]}' '0 0 0 0 0 0 1' '{"id": 3, "pose": [0, 0, 0, 0, 0, 0, 1]}' '' '{"id": "hub", "pose": [NaN, 0, 0, 0, 0, 0, 1]}'; do echo "$l" | vpm-query --pairs fit.json --poses -; done
 2> vpm-query: error: standard input, line 1: there is no part 'hubb'; is 'hub' meant?
 2> vpm-query: error: standard input, line 1: the pose has no "id" that names its part; write {"id": "hub", "pose": […]}

@@ -28,6 +28,11 @@ $ for f in jsonl csv; do bash ask.sh -o cut.$f --resume --stats stats.json --for
 cut.csv
 cut.jsonl
 
+# After a run that has ended nothing is left to do.
+$ cp cut.csv before.csv; touch -d 2001-01-01 cut.csv; bash ask.sh -o cut.csv --resume && cmp cut.csv before.csv && [ cut.csv -ot before.csv ]; ls cut.csv*
+cut.csv
+2> vpm-query: note: nothing is left to do, since the run of cut.csv has ended; --force makes it anew
+
 # A run that is killed; the clock changes no result.
 $ printf '%s\n' '0 0 0 0.95 0 0 0 1' '20 0 0 0.95 0 0 0 1' > path.txt; echo 'exec vpm-query --tool cube.vpmg --frames steps --trajectory path.txt --intrinsics 60,60,31.5,23.5 --rate 100 --quiet "$@"' > replay.sh
 $ bash replay.sh > steps.jsonl; wc -l < steps.jsonl

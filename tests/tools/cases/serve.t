@@ -20,6 +20,13 @@ $ (printf '%s\n' 'no' '{"id":1}' '' '{"id":2,"pose":[0,0,1]}' '{"id":3,"pose":[0
 {"id":11,"error":"a camera's pose without its image","hint":"give \"cloud\" beside it"}
 {"error":"cube.off: this is a mesh in OFF","hint":"give a depth image or a cloud, or the mesh to vpm-pack"}
 {"error":"standard input holds the requests","hint":"name a file"}
+$ printf '%s\n' '{"id":1,"pose":[0,0,1,0,0,0,1],"solds":[]}' '{"id":2,"psoe":[0,0,1,0,0,0,1]}' '{"id":3,"pose":[0,0,1,0,0,0,1],"weight":1}' '{"id":4,"pose":[0,0,1e400,0,0,0,1]}' '{"id":5' '{"id":7,"pose":[0,0,1,0,0,0,1],"header":{"stamp":{"sec":1,"nanosec":0}}}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --serve | cut -d, -f1-3 | sed 's/0\.004.*/0.004/'
+{"id":1,"error":"there is no key 'solds'","hint":"is 'solids' meant?"}
+{"id":2,"error":"there is no key 'psoe'","hint":"is 'pose' meant?"}
+{"id":3,"error":"there is no key 'weight'","hint":"write {\"pose\": [tx
+{"error":"not readable: one of its numbers is beyond what a double holds"}
+{"error":"not JSON","hint":"write {\"pose\": [tx,ty
+{"pose":0,"id":7,"volume":0.004
 $ head -n -3 mixed.jsonl > refused.jsonl && $VALIDATE serve-answer refused.jsonl && $VALIDATE query-result ids.out.jsonl
 $ python3 -c 'import json; print([(a.get("id"), "hint" in a) for a in map(json.loads, open("mixed.jsonl")) if "error" in a])'
 [(None, True), (1, True), (2, True), (3, False), (4, False), (5, False), (6, True), (8, True), (None, True), (None, True), (11, True), (None, True), (None, True)]
