@@ -221,14 +221,14 @@ using Reals = double[kTogether];
 // Sides of triangles in the image, pixels, from the upper end to the lower one.
 struct Edges {
   Reals up_u, up_v, down_u, down_v;
+  Reals slope;  // columns per row; undefined for edges along a row
 };
 
 // Writes where the lines of edges meet the row `v`, also beyond the ends.
 [[gnu::always_inline]] inline void meet_row(const Edges& e, const Reals& v, double beside,
                                             Reals& meets) {
   for (int k = 0; k < kTogether; ++k)
-    meets[k] = e.up_u[k] +
-               (v[k] + beside - e.up_v[k]) / (e.down_v[k] - e.up_v[k]) * (e.down_u[k] - e.up_u[k]);
+    meets[k] = e.up_u[k] + (v[k] + beside - e.up_v[k]) * e.slope[k];
 }
 [[gnu::always_inline]] inline double within(const Edges& e, int k, double v, double meets) {
   const double above = v >= e.down_v[k] ? e.down_u[k] : meets;
@@ -253,10 +253,29 @@ struct Edges {
   }
 }
 
-// Corners of triangles before the camera, in its coordinates.
+// Corners of triangles.
 struct Corners {
   Reals x[3] = {}, y[3] = {}, z[3] = {};
+
+  Vec3 at(int corner, int triangle) const {
+    return {x[corner][triangle], y[corner][triangle], z[corner][triangle]};
+  }
 };
+
+// Maps the corners of the first `count` triangles to the camera's coordinates. Returns true if all
+// have a depth of more than `nearest`.
+VPM_VECTOR_CLONES
+bool map_to_camera(const Pose& to_camera, double nearest, int count, Corners& corners) {
+  const Pose pose = to_camera;
+  int others = 0;  // corners that are not so deep
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < kTogether; ++k) {
+      const Vec3 at = pose * corners.at(i, k);
+      corners.x[i][k] = at.x, corners.y[i][k] = at.y, corners.z[i][k] = at.z;
+      others += (k < count) & !(at.z > nearest);
+    }
+  return others == 0;
+}
 
 // Triangles in the image. Inverse depth is affine in each, and in a pixel's square at most `half`
 // from that in the pixel's middle.
@@ -292,10 +311,12 @@ struct ProjectedTriangles {
     for (int i = 0; i < 3; ++i) {
       const int next = (i + 1) % 3;
       const bool is_down = q[i] <= q[next];
-      t.edges[i].up_u[k] = is_down ? p[i] : p[next];
-      t.edges[i].up_v[k] = is_down ? q[i] : q[next];
-      t.edges[i].down_u[k] = is_down ? p[next] : p[i];
-      t.edges[i].down_v[k] = is_down ? q[next] : q[i];
+      Edges& e = t.edges[i];
+      e.up_u[k] = is_down ? p[i] : p[next];
+      e.up_v[k] = is_down ? q[i] : q[next];
+      e.down_u[k] = is_down ? p[next] : p[i];
+      e.down_v[k] = is_down ? q[next] : q[i];
+      e.slope[k] = (e.down_u[k] - e.up_u[k]) / (e.down_v[k] - e.up_v[k]);
     }
     t.top[k] = lesser(lesser(q[0], q[1]), q[2]);
     t.bottom[k] = greater(greater(q[0], q[1]), q[2]);
@@ -403,18 +424,34 @@ void SolidImage::draw(const PixelWindow& window) {
   others_.resize(triangles.size());
   const std::size_t others = draw_small({triangles.data(), triangles.size(), &vertices_.data()->u,
                                          window, &ranges_.data()->farthest, others_.data()});
-  Batch batch;
-  for (std::size_t k = 0; k < others; ++k) draw_clipped(triangles[others_[k]], batch);
-  draw_batch(batch);
+  Batch whole, rest;
+  for (std::size_t k = 0; k < others; ++k) {
+    const Triangle& triangle = triangles[others_[k]];
+    whole.add({vertex(triangle[0]), vertex(triangle[1]), vertex(triangle[2])});
+    if (whole.is_full()) draw_mapped(whole, rest);
+  }
+  draw_mapped(whole, rest);
+  draw_batch(rest);
 }
 
-[[gnu::always_inline]] inline Vec3 SolidImage::in_camera(std::uint32_t vertex) const {
-  return to_camera_ * Vec3{solid_->x()[vertex], solid_->y()[vertex], solid_->z()[vertex]};
+[[gnu::always_inline]] inline Vec3 SolidImage::vertex(std::uint32_t number) const {
+  return {solid_->x()[number], solid_->y()[number], solid_->z()[number]};
+}
+
+// Draws a batch in the solid's coordinates; what is left of those that are not wholly before the
+// camera is added to `rest`.
+void SolidImage::draw_mapped(Batch& batch, Batch& rest) {
+  if (map_to_camera(to_camera_, nearest_depth_, batch.count, batch.corners))
+    return draw_batch(batch);
+  for (int k = 0; k < batch.count; ++k) {
+    const Corners& c = batch.corners;
+    draw_clipped({c.at(0, k), c.at(1, k), c.at(2, k)}, rest);
+  }
+  batch.count = 0;
 }
 
 // Cuts off what is not before the camera, and draws the rest.
-void SolidImage::draw_clipped(const Triangle& triangle, Batch& batch) {
-  const Vec3 whole[] = {in_camera(triangle[0]), in_camera(triangle[1]), in_camera(triangle[2])};
+void SolidImage::draw_clipped(const Vec3 (&whole)[3], Batch& batch) {
   Vec3 corners[4];
   int count = 0;
   for (int i = 0; i < 3; ++i) {
@@ -504,7 +541,7 @@ bool SolidImage::is_near(double depth, double margin, const PixelWindow& image) 
                bottom = std::max(0.0, (image.v1 - 0.5 - k_.cy) / k_.fy);
   std::vector<std::uint8_t> beyond;  // sides of what is near that a vertex lies beyond
   for (std::uint32_t k = 0; k < vertices_.size(); ++k) {
-    const Vec3 x = in_camera(k);
+    const Vec3 x = to_camera_ * vertex(k);
     const double z = x.z + margin;
     beyond.push_back(static_cast<std::uint8_t>(
         (z < 0 ? 1 : 0) | (x.z > depth ? 2 : 0) | (x.x + margin < left * z ? 4 : 0) |

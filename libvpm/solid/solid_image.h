@@ -97,9 +97,10 @@ class SolidImage {
   std::size_t first_of(int v) const {
     return static_cast<std::size_t>(v - window_.v0) * static_cast<std::size_t>(window_.width());
   }
-  Vec3 in_camera(std::uint32_t vertex) const;
+  Vec3 vertex(std::uint32_t number) const;  // about the solid's centre of mass, m
   struct Batch;
-  void draw_clipped(const Triangle& triangle, Batch& batch);
+  void draw_mapped(Batch& batch, Batch& rest);
+  void draw_clipped(const Vec3 (&whole)[3], Batch& batch);
   void draw_batch(Batch& batch);
 
   const DrawnSolid* solid_ = nullptr;
