@@ -91,21 +91,23 @@ VPM_VECTOR_CLONES
 std::uint32_t mark_row(const float* least, int count, float* depth) {
   std::uint32_t removed = 0;
   for (int u = 0; u < count; ++u) {
-    const float d = depth[u];
-    const bool has_depth = is_measured(d), is_taken = has_depth ? d >= least[u] : least[u] < kNever;
+    const float d = depth[u], limit = least[u];
+    const bool has_depth = is_measured(d),
+               is_taken = (limit < kNever) & (!has_depth | (d >= limit));
     removed += has_depth & is_taken;
     depth[u] = is_taken ? kRemovedDepth : d;
   }
   return removed;
 }
 
-// Tells for each pixel of a row if one of it and of its neighbours is removed.
+// Tells for each pixel of a row if it was measured and one of its neighbours is removed.
 VPM_VECTOR_CLONES
 void find_removed(const float* above, const float* own, const float* below, int count,
                   std::uint32_t* column, std::uint32_t* is_beside) {
   for (int u = 0; u < count; ++u)
     column[u + 1] = is_removed(above[u]) | is_removed(own[u]) | is_removed(below[u]);
-  for (int u = 0; u < count; ++u) is_beside[u] = column[u] | column[u + 1] | column[u + 2];
+  for (int u = 0; u < count; ++u)
+    is_beside[u] = (column[u] | column[u + 1] | column[u + 2]) & is_measured(own[u]);
 }
 
 // Returns the window about both; an empty one changes nothing.
@@ -288,8 +290,7 @@ std::vector<std::size_t> DepthRemover::beside_removed_alone(std::span<const floa
   for (int v = window.v0; v < window.v1; ++v) {
     find_removed(row(v - 1), row(v), row(v + 1), window.width(), column.data(), is_beside.data());
     for (int u = window.u0; u < window.u1; ++u)
-      if (is_beside[static_cast<std::size_t>(u - window.u0)] != 0 &&
-          is_measured(row(v)[u - window.u0]) && is_alone(u, v, depth))
+      if (is_beside[static_cast<std::size_t>(u - window.u0)] != 0 && is_alone(u, v, depth))
         alone.push_back(static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u));
   }
   return alone;
