@@ -211,25 +211,39 @@ enum class BlockClass : std::uint8_t {
   ambiguous,  // is measured sample by sample
 };
 
+// Returns the class of a block about `center` on this side of the surface.
+VPM_HD constexpr BlockClass class_on_block_side(Side side) {
+  return side == Side::free        ? BlockClass::free
+         : side == Side::ambiguous ? BlockClass::ambiguous
+                                   : BlockClass::uncut;
+}
+// True if the surface passes through an ambiguous block about `center` as one plane. `read()`
+// returns the surface sample at the centre; it is called only where a plane may be.
+template <MeasuredBody Surface, class Read>
+VPM_HD bool finds_block_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
+                              Vec3 center, double radius, const ToolRadius& tool, const Read& read,
+                              TangentPlane& plane) {
+  if (!surface.may_be_flat(in_ball)) return false;
+  const double most = kFlatness * tool.length, tolerance = radius < most ? radius : most;
+  if (!surface.is_flat(in_ball, read, tolerance, plane) ||
+      is_far_behind(surface, center, plane.distance(center), tool))
+    return false;
+  OtherWall other;
+  return !is_divisible(radius, tool) ||
+         !finds_other_wall(surface, center, plane, in_ball.point, radius, kOneDirection, other);
+}
 // Returns the class of a block about `center` whose ball was classified, and the plane of one that
-// is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
-// be.
+// is cut. Looks closer before the samples of a block are read one by one.
 template <MeasuredBody Surface, class Read>
 VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::BallClass& in_ball,
                                  Vec3 center, double radius, const ToolRadius& tool,
                                  const Read& read, TangentPlane& plane) {
-  if (in_ball.side == Side::free) return BlockClass::free;
-  if (in_ball.side != Side::ambiguous) return BlockClass::uncut;
-  if (!surface.may_be_flat(in_ball)) return BlockClass::ambiguous;
-  const double most = kFlatness * tool.length, tolerance = radius < most ? radius : most;
-  if (!surface.is_flat(in_ball, read, tolerance, plane) ||
-      is_far_behind(surface, center, plane.distance(center), tool))
-    return BlockClass::ambiguous;
-  OtherWall other;
-  return is_divisible(radius, tool) && finds_other_wall(surface, center, plane, in_ball.point,
-                                                        radius, kOneDirection, other)
-             ? BlockClass::ambiguous
-             : BlockClass::cut;
+  if (in_ball.side != Side::ambiguous) return class_on_block_side(in_ball.side);
+  if (finds_block_plane(surface, in_ball, center, radius, tool, read, plane))
+    return BlockClass::cut;
+  if constexpr (LooksCloser<Surface>)
+    return class_on_block_side(surface.side_by_small_tiles(in_ball, center, radius));
+  return BlockClass::ambiguous;
 }
 
 }  // namespace vpm

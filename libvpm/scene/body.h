@@ -223,6 +223,14 @@ concept SharesPixels = SeesFreeSpace<B> &&
   { body.is_seen_past(B::pixels_of(in_ball), depth, 0U, 1U) } -> std::same_as<bool>;
 };
 
+// True for a body that may tell the side of a ball that classify_ball() left ambiguous, by more
+// work.
+template <class B>
+concept LooksCloser = MeasuredBody<B> &&
+    requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
+  { body.side_by_small_tiles(in_ball, x, length) } -> std::same_as<Side>;
+};
+
 // True for a body that bounds how far places of a ball behind it are from the surface.
 template <class B>
 concept BoundsGap = MeasuredBody<B> &&

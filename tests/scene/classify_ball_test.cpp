@@ -73,6 +73,28 @@ TEST_P(LookAtABall, SaysOfTheBallsInItWhatALookAtThemDoes) {
   EXPECT_GT(none_free, 10000);
 }
 
+TEST_P(LookAtABall, CloserTellsTheSideOfMoreBallsAndNoneWrongly) {
+  const DepthBody cloud(testing::see(synthetic::make_scene(GetParam())));
+  const DepthSurface surface = cloud.surface();
+  RandomBalls balls;
+  int free = 0, behind = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Ball ball = balls.next();
+    const DepthSurface::BallClass in_ball = surface.classify_ball(ball.center, ball.radius);
+    if (in_ball.side != Side::ambiguous) continue;
+    const Side side = surface.side_by_small_tiles(in_ball, ball.center, ball.radius);
+    free += side == Side::free;
+    behind += side == Side::behind;
+    for (int part = 0; part < 20; ++part) {
+      const SurfaceSample sample = surface.sample(balls.next_in(ball).center);
+      if (side == Side::free) EXPECT_FALSE(is_behind_surface(sample));
+      if (side == Side::behind) EXPECT_TRUE(is_behind_surface(sample));
+    }
+  }
+  EXPECT_GT(free, 100);
+  EXPECT_GT(behind, 100);
+}
+
 TEST(BallClass, OverflowsNowhere) {
   const DepthBody cloud(testing::see(synthetic::make_scene("wall")));
   DepthSurface surface = cloud.surface();

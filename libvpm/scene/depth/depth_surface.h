@@ -97,12 +97,25 @@ struct DepthSurface : DepthSampler {
                       u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
                       v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
     cover(in_ball);
-    if (farthest * in_ball.range.high < 1) {
-      in_ball.side = Side::free;
-    } else if (!in_ball.leaves_image && nearest * in_ball.range.low > 1) {
-      in_ball.side = Side::behind;
-    }
+    in_ball.side = side_by_range(in_ball.range, in_ball.leaves_image, center, radius);
     return in_ball;
+  }
+  // Returns the side of a ball that classify_ball() left ambiguous, by tiles of a quarter or less
+  // of the size, which hold fewer pixels besides the ball's own. The middle pixel rules most balls
+  // out that the surface cuts.
+  VPM_HD Side side_by_small_tiles(const BallClass& in_ball, Vec3 center, double radius) const {
+    const double nearest = center.z - radius, middle = in_ball.middle;
+    if (!(nearest >= kSmallestLength)) return in_ball.side;
+    if ((center.z + radius) * middle >= 1 && (in_ball.leaves_image || nearest * middle <= 1))
+      return in_ball.side;
+    const PixelRectangle& p = in_ball.pixels;
+    const int level = level_of_tiles(p, kCloser);
+    const std::int32_t per_row = tiles_per_row(level);
+    InverseDepthRange all{HUGE_VALF, 0};
+    for (std::int32_t v = p.v0 >> level; v <= p.v1 >> level; ++v)
+      for (std::int32_t u = p.u0 >> level; u <= p.u1 >> level; ++u)
+        all = united(all, tiles[level][v * per_row + u]);
+    return side_by_range(all, in_ball.leaves_image, center, radius);
   }
 
   // Returns the side of a classified ball that is ambiguous by the depths of its tiles, by those
@@ -240,6 +253,13 @@ struct DepthSurface : DepthSampler {
   // Least length of a ray, one unit deep, along the normal of a plane that it shows.
   static constexpr double kGrazingPlane = 0.1;
 
+  // Returns the side of a ball before the camera by the range over its pixels.
+  static VPM_HD Side side_by_range(InverseDepthRange range, bool leaves_image, Vec3 center,
+                                   double radius) {
+    if ((center.z + radius) * range.high < 1) return Side::free;
+    return !leaves_image && (center.z - radius) * range.low > 1 ? Side::behind : Side::ambiguous;
+  }
+
   static VPM_HD bool spans_few_pixels(const BallClass& in_ball) {
     const PixelRectangle& p = in_ball.pixels;
     return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
@@ -292,9 +312,7 @@ struct DepthSurface : DepthSampler {
   // Bounds inverse depth over a ball's pixels, and between them, without its part that is affine.
   VPM_HD AffineRange rest_range(const AffineDepth& plane, const BallClass& in_ball) const {
     const PixelRectangle& p = in_ball.pixels;
-    const std::int32_t wide = p.u1 - p.u0, tall = p.v1 - p.v0;
-    const int least = exponent_of(static_cast<std::uint32_t>(wide > tall ? wide : tall)) - 2;
-    const int level = least < 0 ? 0 : least < levels ? least : levels - 1;
+    const int level = level_of_tiles(p, kCloser);
     const std::int32_t u0 = p.u0 >> level, v0 = p.v0 >> level, last = (p.u1 >> level) - u0;
     const double size = std::int32_t{1} << level, middle = 0.5 * (size - 1);
     const double first_u = u0 * size + middle;  // pixels, of the middle of a tile
@@ -328,12 +346,19 @@ struct DepthSurface : DepthSampler {
 #endif
   }
 
+  // Levels by which the tiles of a closer look are smaller.
+  static constexpr int kCloser = 2;
+  // Returns the level of which at most 3 by 3 tiles cover pixels, or one that is so much finer.
+  VPM_HD int level_of_tiles(const PixelRectangle& p, int finer) const {
+    const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
+    const int level = exponent_of(static_cast<std::uint32_t>(wide > high ? wide : high)) - finer;
+    return level < 0 ? 0 : level < levels ? level : levels - 1;
+  }
+
   // Sets the range of the ball's pixels from at most 3 by 3 tiles.
   VPM_HD void cover(BallClass& in_ball) const {
     const PixelRectangle& p = in_ball.pixels;
-    const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
-    const int least = exponent_of(static_cast<std::uint32_t>(wide > high ? wide : high));
-    const int level = least < levels ? least : levels - 1;
+    const int level = level_of_tiles(p, 0);
     const std::int32_t row = tiles_per_row(level);
     const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
     const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
