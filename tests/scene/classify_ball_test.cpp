@@ -86,9 +86,9 @@ TEST_P(LookAtABall, CloserTellsTheSideOfMoreBallsAndNoneWrongly) {
     free += side == Side::free;
     behind += side == Side::behind;
     for (int part = 0; part < 20; ++part) {
-      const SurfaceSample sample = surface.sample(balls.next_in(ball).center);
-      if (side == Side::free) EXPECT_FALSE(is_behind_surface(sample));
-      if (side == Side::behind) EXPECT_TRUE(is_behind_surface(sample));
+      const bool is_behind = is_behind_surface(surface.sample(balls.next_in(ball).center));
+      EXPECT_FALSE(side == Side::free && is_behind);
+      EXPECT_FALSE(side == Side::behind && !is_behind);
     }
   }
   EXPECT_GT(free, 100);
