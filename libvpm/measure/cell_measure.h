@@ -318,8 +318,16 @@ class CellMeasure {
                   CellResult& result, const Near& near) const {
     const ToolPiece piece = piece_of_sample(k);
     const Vec3 x = to_surface_ * piece.at;
-    const PieceSample sampled =
-        sample_of(piece, x, sample_for_piece(near, x, piece.extent, result.point));
+    add_sample(k, place, x, sample_for_piece(near, x, piece.extent, result.point), shared, far,
+               result, near);
+  }
+  // Does so for a sample at x, surface frame, from its surface sample.
+  template <class Near>
+  void add_sample(std::uint32_t k, std::uint32_t place, Vec3 x, const SurfaceSample& on_surface,
+                  SharedDirection& shared, PieceIndex* far, CellResult& result,
+                  const Near& near) const {
+    const ToolPiece piece = piece_of_sample(k);
+    const PieceSample sampled = sample_of(piece, x, on_surface);
     result.point = sampled.on_surface.point;
     if (!note(piece, sampled, PieceIndex::sample(k), far, result)) return;
     const WayOut way = way_out(sampled, true);

@@ -129,6 +129,34 @@ TEST_P(TreeOf, FindsTheNearestOfTheBallsThatTouch) {
   }
 }
 
+// Expects that one search for four places finds what four searches do.
+void expect_the_same_of_four(const PointTree& tree, const Vec3 (&places)[4], std::uint32_t near) {
+  std::uint32_t found[4];
+  tree.nearest_of_four(places, near, found);
+  for (int k = 0; k < 4; ++k) ASSERT_EQ(found[k], tree.nearest(places[k], HUGE_VAL)) << k;
+}
+
+// Places near each other, apart, and at one place; equal distances go to the smaller index.
+TEST_P(TreeOf, FindsTheNearestOfFourPlacesAtOnce) {
+  const OrderedPoints ordered(scattered(GetParam(), true));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at(-1.5, 1.5);
+  const PointTree whole = ordered.tree();
+  PointTree near = whole;
+  near.enter_near({0.3, 0.2, 0}, 0.4);
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 middle{quarter(at(random)), quarter(at(random)), quarter(at(random))};
+    Vec3 places[4];
+    for (Vec3& x : places)
+      x = middle + quarter(k % 3 * at(random)) * Vec3{1, k % 2 * at(random), k % 5 * 0.25};
+    const auto hint = static_cast<std::uint32_t>(random() % ordered.points.size());
+    for (const std::uint32_t begin : {kNoPoint, hint}) {
+      expect_the_same_of_four(whole, places, begin);
+      expect_the_same_of_four(near, places, begin);
+    }
+  }
+}
+
 // Searches that begin near a place find the same points, about it and elsewhere.
 TEST_P(TreeOf, FindsTheSameFromNearby) {
   const OrderedPoints ordered(scattered(GetParam(), true));

@@ -71,6 +71,14 @@ concept SamplesFour = requires(const Surface& surface, const Vec3 (&places)[4],
   sample_four(surface, places, on_surface_at);
 };
 
+// True for a surface, or a part of one, that searches at four places at once, from a point near
+// them on.
+template <class Surface>
+concept SearchesFour = requires(const Surface& surface, const Vec3 (&places)[4],
+                                SurfaceSample (&on_surface_at)[4]) {
+  surface.sample_four(places, kNoPoint, on_surface_at);
+};
+
 // Samples a surface at four places by vectors where it can be, others one after another.
 struct SampleTogether : SampleInTurn {
   template <class Surface, class Take>
@@ -91,13 +99,16 @@ inline constexpr std::uint32_t kAtOnce = 16;
 // Samples a surface at places, kAtOnce at most, by vectors where it can be.
 template <class Surface>
 void sample_places(const Surface& surface, std::span<const Vec3> places, PlaceSample* at) {
-  if constexpr (SamplesFour<Surface>) {
+  if constexpr (SamplesFour<Surface> || SearchesFour<Surface>) {
     const std::size_t last = places.size() - 1;
     for (std::size_t k = 0; k < places.size(); k += 4) {
       const Vec3 four[] = {places[k], places[std::min(k + 1, last)], places[std::min(k + 2, last)],
                            places[std::min(k + 3, last)]};
       SurfaceSample on_surface_at[4];
-      sample_four(surface, four, on_surface_at);
+      if constexpr (SamplesFour<Surface>)
+        sample_four(surface, four, on_surface_at);
+      else
+        surface.sample_four(four, k > 0 ? at[k - 1].on_surface.point : kNoPoint, on_surface_at);
       for (std::size_t lane = 0; lane < 4 && k + lane <= last; ++lane)
         at[k + lane] = {four[lane], on_surface_at[lane]};
     }
@@ -179,9 +190,32 @@ void add_far_together(const CellMeasure<Surface>& measure, std::span<const Piece
   push();
 }
 
-// Adds samples one by one, for surfaces that vectors cannot sample.
+// Adds samples one by one, for surfaces that vectors cannot sample. Those that search do so for
+// four samples at once.
 struct SamplesOneByOne : SamplesInTurn {
   static constexpr auto* clipped = clipped_moments;
+
+  template <class Measure, class Near>
+  void add(const Measure& measure, const SampleRange& range, const Near& near, PieceIndex* far,
+           CellResult& result) const {
+    if constexpr (SearchesFour<Near>) {
+      typename Measure::SharedDirection shared;
+      for (std::uint32_t first = range.begin; first < range.end; first += 4) {
+        Vec3 places[4];
+        for (std::uint32_t k = 0; k < 4; ++k) {
+          const std::uint32_t sample = std::min(first + k, range.end - 1);
+          places[k] = measure.to_surface() * measure.piece_of_sample(sample).at;
+        }
+        SurfaceSample on_surface_at[4];
+        near.sample_four(places, result.point, on_surface_at);
+        for (std::uint32_t k = 0; k < 4 && first + k < range.end; ++k)
+          measure.add_sample(first + k, first + k - range.begin, places[k], on_surface_at[k],
+                             shared, far, result, near);
+      }
+    } else {
+      SamplesInTurn::add(measure, range, near, far, result);
+    }
+  }
 };
 
 // Adds the samples of one cell before cameras, by vectors.

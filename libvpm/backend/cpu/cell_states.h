@@ -119,7 +119,9 @@ struct CellStates {
   // Holds one entry per row of the SpatialLevel in each vector, unless said otherwise.
   std::vector<CellClass> cells;
   std::vector<FloodState> flood_states;
-  std::vector<CellResult> results;   // valid for cut and partial cells
+  std::vector<CellResult> results;  // valid for cut and partial cells
+  // The point nearest to the centre, or kNoPoint where nobody asked; for bodies that search.
+  std::vector<std::uint32_t> points;
   std::vector<double> squared_gaps;  // gap of the centre, valid where asked, m^2
   std::vector<PieceIndex> far;       // far pieces, from SpatialLevel::first_piece() of each cell on
   // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.

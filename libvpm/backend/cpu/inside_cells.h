@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/core/parallel.h"
@@ -99,6 +100,7 @@ class InsideFlood {
   // Floods with all threads of the region, each in its part of the tool. Steps to other parts wait
   // a round.
   void run(ParallelRegion& region) {
+    if constexpr (SearchesFour<Surface>) work_.states.points.assign(work_.level.size(), kNoPoint);
     split(region.threads());
     region.loop(work_.states.part_count, 1,
                 [&](std::size_t k, std::size_t) { enter(work_.states.parts[k]); });
@@ -283,7 +285,7 @@ class InsideFlood {
       const Vec3 at = work_.center(i);
       if (!as_one && !encloses(work_.surface, at)) continue;
       if (work_.states.cells[i] == CellClass::no_surface) {
-        if (!is_behind_surface(work_.surface.sample(at))) continue;
+        if (!is_behind_surface(sample_center(i))) continue;
         work_.states.cells[i] = CellClass::whole;
       }
       work_.states.flood_states[i] = FloodState::enclosed;
@@ -321,9 +323,38 @@ class InsideFlood {
       work_.states.set(cluster, found);
   }
 
+  // Samples the surface at the centre of a row.
+  SurfaceSample sample_center(std::uint32_t row) const {
+    if constexpr (SearchesFour<Surface>) {
+      const std::vector<std::uint32_t>& points = work_.states.points;
+      if (points[row] == kNoPoint) search_from(row);
+      return work_.surface.sample_of_point(work_.center(row), points[row]);
+    } else {
+      return work_.surface.sample(work_.center(row));
+    }
+  }
+  // Searches the points nearest to the centres of a row and of three more of its cluster, of which
+  // the flood is likely to ask next. Only the part that owns them may call this.
+  void search_from(std::uint32_t row) const {
+    std::vector<std::uint32_t>& points = work_.states.points;
+    const CellCluster& cluster = work_.level.cluster(work_.level.root(row));
+    std::uint32_t rows[4], found = 0;
+    for (std::uint32_t i = row; i < cluster.end && found < 4; ++i) {
+      const FloodState state = work_.states.flood_states[i];
+      const bool may_ask = state == FloodState::unknown || state == FloodState::near;
+      if (i == row || (may_ask && points[i] == kNoPoint)) rows[found++] = i;
+    }
+    Vec3 places[4];
+    for (std::uint32_t k = 0; k < 4; ++k) places[k] = work_.center(rows[std::min(k, found - 1)]);
+    SurfaceSample on_surface_at[4];
+    const std::uint32_t near = row > cluster.begin ? points[row - 1] : kNoPoint;
+    work_.surface.sample_four(places, near, on_surface_at);
+    for (std::uint32_t k = 0; k < found; ++k) points[rows[k]] = on_surface_at[k].point;
+  }
+
   FloodState find_flood_state(FloodPart& part, std::uint32_t j) {
     const Vec3 at = work_.center(j);
-    const SurfaceSample on_surface = work_.surface.sample(at);
+    const SurfaceSample on_surface = sample_center(j);
     if (work_.states.cells[j] == CellClass::no_surface) {
       if (!is_behind_surface(on_surface)) return FloodState::closed;
       work_.states.cells[j] = CellClass::whole;
@@ -347,8 +378,7 @@ class InsideFlood {
       return distance * distance;
     }
     if (work_.states.flood_states[row] == FloodState::near) {
-      const Vec3 at = work_.center(row);
-      work_.states.squared_gaps[row] = squared_gap(work_.surface.sample(at));
+      work_.states.squared_gaps[row] = squared_gap(sample_center(row));
       work_.states.flood_states[row] = FloodState::open;
     }
     return work_.states.squared_gaps[row];

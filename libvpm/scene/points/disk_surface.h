@@ -73,6 +73,13 @@ struct DiskSurface {
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
     return sample_of_point(x, feet.nearest(x, HUGE_VAL, near));
   }
+  // Samples four places by one search. Host only.
+  void sample_four(const Vec3 (&places)[4], std::uint32_t near,
+                   SurfaceSample (&on_surface_at)[4]) const {
+    std::uint32_t found[4] = {kNoPoint, kNoPoint, kNoPoint, kNoPoint};
+    if (feet.count > 0) feet.nearest_of_four(places, near, found);
+    for (int k = 0; k < 4; ++k) on_surface_at[k] = sample_of_point(places[k], found[k]);
+  }
   VPM_HD SurfaceSample sample_of_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
     const TangentPlane own = plane_of(i);
@@ -278,29 +285,35 @@ struct DiskSurface {
     const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
                across = cross(own.normal, side);
     const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
+    const auto place_of = [&](int k) { return x + kFurther * radius * (asides[k] - own.normal); };
     double least = radius;
     OtherWall wall;
-    for (const Vec3 aside : asides) {
-      const Vec3 place = x + kFurther * radius * (aside - own.normal);
+    const auto take = [&](Vec3 place, const SurfaceSample& there) {
       double away = 0;
-      if (!find_border(near, place, x, own, point, unlike, wall, away) || !(away < least)) continue;
+      if (!find_border(place, there, x, own, unlike, wall, away) || !(away < least)) return;
       least = away > 0 ? away : 0;
       other = wall;
-    }
+    };
+#ifdef __CUDA_ARCH__
+    for (int k = 0; k < 4; ++k) take(place_of(k), near.sample(place_of(k), point));
+#else
+    const Vec3 places[4] = {place_of(0), place_of(1), place_of(2), place_of(3)};
+    SurfaceSample there[4];
+    near.sample_four(places, point, there);
+    for (int k = 0; k < 4; ++k) take(places[k], there[k]);
+#endif
     if (!(least < radius)) return false;
     // Searches beyond the border: there a wall may end at a crease.
     const Vec3 beyond = other.border.foot - kBeyondBorder * radius * other.border.normal;
-    if (!find_border(near, beyond, x, own, point, unlike, wall, least)) return true;
+    if (!find_border(beyond, near.sample(beyond, point), x, own, unlike, wall, least)) return true;
     other = wall;
     return least < radius;
   }
-  // Finds the border between `own` and the wall nearest to a place, and its distance `away` from x,
-  // m. Returns false and changes nothing if that wall does not face elsewhere.
-  template <class Near>
-  VPM_HD bool find_border(const Near& near, Vec3 place, Vec3 x, const TangentPlane& own,
-                          std::uint32_t point, double unlike, OtherWall& other,
-                          double& away) const {
-    const SurfaceSample there = near.sample(place, point);
+  // Finds the border between `own` and the wall nearest to a place, whose surface sample is
+  // `there`, and its distance `away` from x, m. Returns false and changes nothing if that wall does
+  // not face elsewhere.
+  VPM_HD bool find_border(Vec3 place, const SurfaceSample& there, Vec3 x, const TangentPlane& own,
+                          double unlike, OtherWall& other, double& away) const {
     if (!(there.distance < 0)) return false;
     const Vec3 normal = closest_normal(place, there);
     if (dot(normal, own.normal) > unlike) return false;
@@ -357,6 +370,12 @@ class DiskSurface::AroundBall {
       return surface_.sample(x, near);
     return surface_.sample_of_point(x, points_.nearest(x));
   }
+  // Samples four places. Host only.
+  void sample_four(const Vec3 (&places)[4], std::uint32_t near,
+                   SurfaceSample (&on_surface_at)[4]) const {
+    if (points_.is_empty()) return surface_.sample_four(places, near, on_surface_at);
+    for (int k = 0; k < 4; ++k) on_surface_at[k] = sample(places[k], near);
+  }
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const {
     if (!covers(x, kFarthestPlace * radius))
@@ -405,12 +424,7 @@ VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
                                                 std::uint32_t point, double radius, double unlike,
                                                 OtherWall& other) const {
   if (!may_meet_other_wall(x, own, point, radius, unlike)) return false;
-#ifdef __CUDA_ARCH__
-  const DiskSurface& near = *this;  // each thread of a device would need a list of its own
-#else
-  const AroundBall near(*this, x, kFarthestPlace * radius, point);
-#endif
-  return choose_other_wall(near, x, own, point, radius, unlike, other);
+  return choose_other_wall(*this, x, own, point, radius, unlike, other);
 }
 
 // Returns the cones of all normals that the disks know, for the nodes that searches step to.

@@ -21,6 +21,45 @@ namespace {
   return widen(four);
 }
 
+// Holds the nearest points so far of four places, one in each lane.
+class FourNearest {
+ public:
+  explicit FourNearest(const Vec3 (&places)[4]) : x_(places[0], places[1], places[2], places[3]) {}
+
+  [[gnu::always_inline]] void consider(Vec3f point, std::uint32_t i) {
+    const Vec3 p = widen(point);
+    const Double4 squared = squared_norm(Vec3x4(p, p, p, p) - x_);
+    const Mask4 index = Mask4{} + static_cast<std::int64_t>(i);
+    const Mask4 nearer = (squared < squared_) | ((squared == squared_) & (index < points_));
+    squared_ = nearer ? squared : squared_;
+    points_ = nearer ? index : points_;
+  }
+  // True if a box may hold a point that is nearer to one of the places, or equally near.
+  [[gnu::always_inline]] bool may_hold_nearer(const BoxQuad& quad, std::uint32_t k) const {
+    const Double4* const at[3] = {&x_.x, &x_.y, &x_.z};
+    Double4 sum{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Double4 before = double{quad.low[axis][k]} - *at[axis],
+                    after = *at[axis] - double{quad.high[axis][k]}, zero{};
+      const Double4 gap = before > after ? before : after;
+      sum += gap > 0 ? gap * gap : zero;
+    }
+    return any(sum <= squared_);
+  }
+  // Returns the squared distance of the farthest of the nearest points, m^2.
+  [[gnu::always_inline]] double farthest() const {
+    return std::max(std::max(squared_[0], squared_[1]), std::max(squared_[2], squared_[3]));
+  }
+  [[gnu::always_inline]] std::uint32_t point(int lane) const {
+    return static_cast<std::uint32_t>(points_[lane]);
+  }
+
+ private:
+  Vec3x4 x_;
+  Double4 squared_ = Double4{} + HUGE_VAL;  // to the points, m^2
+  Mask4 points_ = Mask4{} + std::int64_t{kNoPoint};
+};
+
 constexpr float kInf = HUGE_VALF;
 constexpr PointBox kEmpty{{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
 
@@ -140,6 +179,46 @@ void PointTree::search_by_vectors(Vec3 x, Nearest& best) const {
 VPM_VECTOR_CLONES
 void PointTree::search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest& best) const {
   search<ByVectors>(x, touching, best);
+}
+
+// Goes down by the distances of boxes from the middle of the places, and asks for each node that it
+// takes whether one of them needs it.
+VPM_VECTOR_CLONES
+void PointTree::nearest_of_four(const Vec3 (&places)[4], std::uint32_t near,
+                                std::uint32_t (&found)[4]) const {
+  const auto is_held = [&](Vec3 x) { return entry.holds(x, 0); };
+  if (entry.squared_reach >= 0 && !std::ranges::all_of(places, is_held)) {
+    for (int k = 0; k < kFour; ++k) found[k] = nearest(places[k], HUGE_VAL, near);
+    return;
+  }
+  constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+  const Vec3 middle = 0.25 * ((places[0] + places[1]) + (places[2] + places[3]));
+  double reach = 0;
+  for (const Vec3& x : places) reach = std::max(reach, norm(x - middle));
+  FourNearest best(places);
+  if (near != kNoPoint) best.consider(points[near], near);
+  const auto last_key = [&]() __attribute__((always_inline)) {
+    const double bound = kSlack * (std::sqrt(best.farthest()) + reach);
+    return NodeStack::last_key(bound * bound);
+  };
+  NodeStack waiting;
+  std::uint64_t last = last_key();
+  begin_search<ByVectors>(middle, EachPoint{}, last, waiting);
+  while (!waiting.is_empty()) {
+    const std::uint64_t key = waiting.top_key();
+    const std::uint32_t node = waiting.take();
+    if (key > last || !best.may_hold_nearer(boxes[node / 4], node % 4)) continue;
+    if (node < leaves) {
+      double squared[4];
+      ByVectors::to_boxes(boxes[node], middle, squared);
+      waiting.push([&](std::uint32_t k) { return 4 * node + k; }, squared, last);
+      continue;
+    }
+    const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
+    for (std::uint32_t i = begin; i < end; ++i) best.consider(points[i], i);
+    last = last_key();
+  }
+  for (int k = 0; k < kFour; ++k) found[k] = best.point(k);
 }
 
 std::uint32_t PointTree::list_in_leaf(std::uint32_t begin, std::uint32_t end, Vec3 center,
