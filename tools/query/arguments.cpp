@@ -337,11 +337,13 @@ void check_kept_lines(const Arguments& a, const std::vector<std::string>& inputs
         "--output keeps its lines in " + kept + " until they are done, which ";
     for (const std::string& input : inputs)
       if (file::is_same_file(kept, input))
-        refuse_usage(reason + "is the input " + input + ": name another output");
+        throw Error(ErrorKind::invalid_argument, reason + "is the input " + input, {},
+                    "name another output");
     for (const auto& [option, path] :
          {std::pair{"--spheres-out", a.spheres_out}, {"--stats", a.stats}, {"--view", a.view}})
       if (file::is_same_file(kept, path))
-        refuse_usage(reason + option + " names: name another file");
+        throw Error(ErrorKind::invalid_argument, reason + option + " names", {},
+                    "name another file");
   }
 }
 
