@@ -93,7 +93,7 @@ COMMANDS = [
     (f"{TOOL} --pose {POSE} --spheres-out out.xyz", r"must end in (\S+), (\S+) \(balls\), (\S+) or (\S+)",
      f"for e in {{0}} {{1}} {{2}} {{3}}; do {TOOL} --pose {POSE} --spheres-out out$e || exit; done", WALL),
     ("cp poses.txt out.part.json; vpm-query --tool small.vpmg --cloud wall.vpmc --poses out.part.json -o out",
-     "--output keeps its lines in out.part.json until they are done, which is the input out.part.json: name another output",
+     "--output keeps its lines in out.part.json until they are done, which is the input out.part.json; name another output",
      "cp poses.txt out.part.json; vpm-query --tool small.vpmg --cloud wall.vpmc --poses out.part.json -o out.jsonl"),
     ("vpm-query --tool small.vpmg --cloud wall.vpmc --poses poses.txt -o out --stats out.part", "name another file",
      "vpm-query --tool small.vpmg --cloud wall.vpmc --poses poses.txt -o out --stats out.json"),

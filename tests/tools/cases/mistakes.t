@@ -17,11 +17,11 @@ $ echo '0 wall.png' > list.txt; vpm-query --tool cube.vpmg --frames list.txt --t
 [2]
 # What a run keeps its lines in is no input, and no other output, even with --force.
 $ cp path.txt kept.part.json; vpm-query --tool cube.vpmg --cloud wall.vpmc --poses kept.part.json -o kept --force
-2> vpm-query: error: --output keeps its lines in kept.part.json until they are done, which is the input kept.part.json: name another output
+2> vpm-query: error: --output keeps its lines in kept.part.json until they are done, which is the input kept.part.json; name another output
 [2]
 $ cmp kept.part.json path.txt; rm kept.part.json
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o kept --stats kept.part
-2> vpm-query: error: --output keeps its lines in kept.part until they are done, which --stats names: name another file
+2> vpm-query: error: --output keeps its lines in kept.part until they are done, which --stats names; name another file
 [2]
 $ ln -s wall.png link.png; vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --report link.png
 2> vpm-normals: error: --report would overwrite the input wall.png; name another output, or give --force
