@@ -111,10 +111,17 @@ struct DepthSurface : DepthSampler {
     const PixelRectangle& p = in_ball.pixels;
     const int level = level_of_tiles(p, kCloser);
     const std::int32_t per_row = tiles_per_row(level);
+    const std::int32_t last = p.u1 >> level;
     InverseDepthRange all{HUGE_VALF, 0};
-    for (std::int32_t v = p.v0 >> level; v <= p.v1 >> level; ++v)
-      for (std::int32_t u = p.u0 >> level; u <= p.u1 >> level; ++u)
-        all = united(all, tiles[level][v * per_row + u]);
+    for (std::int32_t v = p.v0 >> level; v <= p.v1 >> level; ++v) {
+      const InverseDepthRange* const row = tiles[level] + v * per_row;
+      // Three at once, none of which waits for another to be read; the last ones are read again.
+      for (std::int32_t u = p.u0 >> level; u <= last; u += 3) {
+        const InverseDepthRange one = row[u], two = row[u < last ? u + 1 : last],
+                                three = row[u + 1 < last ? u + 2 : last];
+        all = united(united(all, one), united(two, three));
+      }
+    }
     return side_by_range(all, in_ball.leaves_image, center, radius);
   }
 
