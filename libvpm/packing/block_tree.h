@@ -17,7 +17,7 @@ inline double edge_of_level(int level) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(kBias - level) << kFraction);
 }
 
-// Returns half the diagonal of a cell, rounded up.
+// Returns half the diagonal of a cube whose edge is 2^-level; sqrt(3) / 2 is rounded up.
 inline float half_diagonal(int level) {
   return static_cast<float>(0.866025404 * edge_of_level(level));
 }

@@ -1,8 +1,9 @@
 // Upper bounds of the clearance over cells: cubes of an octree within a solid.
 //
 // The clearance d(x) = min(distance to the mesh, min_i |x - c_i| - r_i) is 1-Lipschitz, so
-// d(centre) + half diagonal bounds it over a cell; the farthest point of the cell from one
-// obstacle, all obstacles together and thin parts bound it more tightly.
+// d(centre) + half diagonal bounds it over a cell. Three bounds are tighter: the distance of the
+// cell's farthest point from one obstacle, the greatest clearance that all obstacles near the cell
+// leave together, and what fits into a thin part of the solid or a narrow gap beside a sphere.
 #pragma once
 
 #include <cstdint>

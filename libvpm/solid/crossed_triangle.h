@@ -15,10 +15,11 @@ namespace vpm {
 // The part of a triangle a, b, c inside is Σ T(o,p,q) over the segments p-q + Σ over the edges u-v
 // of (w of v) T(o,m,v) - (w of u) T(o,m,u) - Σ s T(o,m,p) over the edge's crossings p, s = +1 where
 // it enters, with T the oriented triangle, w 1 for corners inside, and any o in the plane and m on
-// the edge. From o = a, and m = b on edge b-c, only c and the crossings of b-c add anything. But
-// terms from a corner that is much farther away than the smaller solid is large would lose the
-// digits of their sum: then o and each m are the places next to the origin, which is in the smaller
-// solid.
+// the edge. From o = a, and m = b on edge b-c, only c and the crossings of b-c add anything.
+//
+// The origin is the smaller solid's centre of mass. Where a corner is much farther from it than
+// that solid is large, triangles that begin at the corner are so large that their sum has no digits
+// left. Then o is the point of the plane nearest to the origin, and m that of each edge.
 template <class Four>
 struct CrossedTriangleOf {
   std::uint32_t triangle = 0;
@@ -41,8 +42,8 @@ struct CrossedTriangleOf {
   // Whether a corner is farther away than the unit. None is where solids are alike in size.
   VPM_HD bool is_far() const { return is_far_; }
   VPM_HD Vec3 from() const { return from_; }  // o
-  // Calls take(sign, p, q) for the oriented triangles T(o,p,q) of a crossing of an edge, or of
-  // a corner inside.
+  // Calls take(sign, p, q) for each oriented triangle T(o,p,q), as above, that a crossing of an
+  // edge at a place adds to the part. for_corner() does so for corner k, which is inside.
   template <class Take>
   [[gnu::always_inline]] VPM_HD void for_crossing(unsigned edge, int sign, Vec3 place,
                                                   const Take& take) const {

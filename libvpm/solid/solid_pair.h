@@ -112,9 +112,10 @@ class SolidPair {
 
   // Largest SharedSolid::closure that is given.
   static constexpr double kMaxClosure = 1e-8;
-  // Largest reach of one solid in reaches of the other. The jitter moves faces of the larger by
-  // half of kJitter of its reach, which is then .87e-6 of the volume of a cube that a whole face of
-  // the smaller is wide; of thin solids it is more, as their area is of their volume.
+  // Solids are refused if one has more than so many times the reach of the other. The jitter moves
+  // the faces of the larger by half of kJitter times its reach. At this limit that changes the
+  // volume which it shares with a cube standing on it by .87e-6 of the cube's; with thin solids by
+  // more, since they have more area for their volume.
   static constexpr double kMostUnlike = 0x1p17;
 
  private:

@@ -297,7 +297,8 @@ void SurfacePair::add_whole_triangle(std::size_t which, std::uint32_t triangle) 
   note_whole(which, triangle | kLeaf);
 }
 
-// Adds the moments of all below a node, or of a triangle, to sums of the role.
+// Adds to one solid's sums the moments of a triangle of it, or of all triangles below a node, which
+// lie whole inside the other solid.
 void SurfacePair::add_moments(const Role& role, std::uint32_t child, RoleSums& sums) const {
   if ((child & kLeaf) == 0) return sums.whole.add(scaled(role.tree->moments(child), per_unit_));
   const std::uint32_t triangle = child & ~kLeaf;

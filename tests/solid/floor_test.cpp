@@ -42,8 +42,8 @@ Floor box_floor(const std::string& name, Vec3 edges) {
            {-x, .4 * y, -.2 * z}}};
 }
 
-// Ground of n x n squares of uneven height, of two triangles each, with places on faces, on a ridge
-// and at a vertex.
+// Returns a block whose top is uneven ground, of n x n squares of two triangles each. Small solids
+// are put on it at places in a face, on a ridge between two and at a vertex.
 Floor ground(double edge, std::uint32_t n) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> height(-.02 * edge, .02 * edge);

@@ -69,6 +69,11 @@ Json told_in(const std::string& path) {
   return told.is_object() ? told : Json::object();
 }
 
+// Returns the file that holds the lines of an output until they are done.
+std::string part_of(const std::string& path) {
+  return end_of_links(path) + ".part";
+}
+
 }  // namespace
 
 bool KeptLines::are_kept(const std::string& path) {
@@ -79,12 +84,12 @@ bool KeptLines::are_kept(const std::string& path) {
 
 std::vector<std::string> KeptLines::beside(const std::string& path) {
   if (path.empty() || !are_kept(path)) return {};
-  const std::string part = end_of_links(path) + ".part";
+  const std::string part = part_of(path);
   return {part, part + ".json"};
 }
 
 void KeptLines::check(const std::string& path, Leftover leftover) {
-  const std::string part = end_of_links(path) + ".part";
+  const std::string part = part_of(path);
   std::error_code fault;
   if (leftover != Leftover::refuse || !are_kept(path) || !fs::exists(part, fault)) return;
   refuse_usage(part + " holds lines of a run that was interrupted: give --resume to go on after " +
@@ -94,11 +99,11 @@ void KeptLines::check(const std::string& path, Leftover leftover) {
 bool KeptLines::are_finished(const std::string& path, Leftover leftover) {
   std::error_code fault;
   return leftover == Leftover::resume && !file::descriptor_of(path) &&
-         fs::is_regular_file(path, fault) && !fs::exists(end_of_links(path) + ".part", fault);
+         fs::is_regular_file(path, fault) && !fs::exists(part_of(path), fault);
 }
 
 KeptLines::KeptLines(const std::string& path, const Json& run, Leftover leftover)
-    : target_(end_of_links(path)), part_(target_ + ".part"), told_(part_ + ".json") {
+    : target_(end_of_links(path)), part_(part_of(path)), told_(part_ + ".json") {
   open();
   try {
     if (leftover == Leftover::resume) go_on(run);

@@ -122,8 +122,8 @@ class DiskWindows {
   double wide_window(std::uint32_t i, const DiskLeaf& leaf) const {
     return at_most(kWide * measured_.radii[i], kLeavesInWide * leaf.diagonal);
   }
-  // Returns the radius, m, or the limit if that is less. A limit of 0, which a leaf has of which
-  // all disks are at one place, does not count.
+  // Returns the lesser of a radius and a limit, m. A limit of 0 bounds nothing: it comes from a
+  // leaf without extent, whose disks are all at one place.
   static double at_most(double radius, double limit) {
     return limit > 0 ? std::min(radius, limit) : radius;
   }
