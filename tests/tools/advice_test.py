@@ -16,6 +16,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -28,6 +29,7 @@ from advice_words import ASK, CAMERA, POINTS, WALL
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SECONDS = 120
+NEEDS_SHELL = re.compile(r"[|&;<>()$`*?\[\]{}~#!=\\\n]")  # a command of plain words begins sooner without a shell
 NOT_BUILT = re.compile(r"is not read by this build|this build reads no|this build draws no pages")
 
 # Texts of the sources that advise something, and that no row can meet here: reason, and the texts.
@@ -177,7 +179,8 @@ class Tools:
         for path in self.folder.glob("out*"):
             if path.is_file():
                 path.unlink()
-        return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=self.folder, env=self.environment,
+        words = ["bash", "-o", "pipefail", "-c", command] if NEEDS_SHELL.search(command) else shlex.split(command)
+        return subprocess.run(words, cwd=self.folder, env=self.environment,
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=SECONDS)
 
     def must(self, command):
