@@ -23,8 +23,7 @@ import headless_page  # noqa: E402
 BIN, EXAMPLE, FOLDER, BROWSER = pathlib.Path(), pathlib.Path(), pathlib.Path(), None
 NAME = "<script>alert(1)</script>.vpmg"  # of a file, as a page must show it
 OPEN_MESH = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n"
-INTRINSICS = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
-WINDOW = (960, 540)  # pixels, which the processor draws: the time of this test is theirs
+WINDOW = (820, 460)  # pixels, which the processor draws: the time of this test is theirs; up to a width of 800 a page is a phone's
 PHONE = (390, 844)
 HALVES = (240, 320)  # rows and columns of the demo's image, of which every second is taken
 HALF_INTRINSICS = ("--intrinsics", "262.5,262.5,159.75,119.75", "--depth-scale", "5000")
@@ -315,9 +314,9 @@ class Query(PageTest):
         folder = FOLDER / "frames"
         folder.mkdir(exist_ok=True)
         for k, z in enumerate((5000, 5200, 5400)):
-            write_depth(f"frames/frame-{k:06}.depth.png", numpy.full((480, 640), z))
+            write_depth(f"frames/frame-{k:06}.depth.png", numpy.full(HALVES, z))
         (FOLDER / "path.txt").write_text("".join(f"{k / 30} 0 0 1 0 0 0 1\n" for k in range(4)))
-        run("vpm-normals", "frames", *INTRINSICS, "--quiet", "-o", "clouds")
+        run("vpm-normals", "frames", *HALF_INTRINSICS, "--quiet", "-o", "clouds")
         run("vpm-query", "--tool", "tool.vpmg", "--frames", "clouds", "--trajectory", "path.txt", "--rate", 90,
             "--quiet", "-o", "frames.jsonl", "--view", "frames.html")
         page, lines = self.open("frames.html"), results("frames.jsonl")
@@ -437,9 +436,9 @@ class OtherTools(PageTest):
         self.assertGreater(page.report()["cell"]["samples"], 0)
         page.evaluate("vpm.showCell(-1)")
         page.evaluate("vpm.setLayer('solid', false)")
-        for x in range(375, 900, 15):  # somewhere on the ring
-            page.mouse("mousePressed", x, 250)
-            page.mouse("mouseReleased", x, 250)
+        for x in range(350, 815, 15):  # somewhere on the ring
+            page.mouse("mousePressed", x, 220)
+            page.mouse("mouseReleased", x, 220)
             if page.report()["cell"]:
                 break
         self.assertGreater(page.report()["cell"]["samples"], 0)
