@@ -18,7 +18,27 @@ using ContactPlace = std::uint16_t;
 inline constexpr std::uint32_t kPlacesPerEdge = 16;
 inline constexpr std::uint32_t kContactPlaces = kPlacesPerEdge * kPlacesPerEdge * kPlacesPerEdge;
 
-// Where samples and blocks of a level lie. Immutable.
+// Sets of cubes in which a cell has samples: bit k of a set, in words of 64, stands for places[k].
+struct CellPlaces {
+  static constexpr std::uint32_t kBits = 64;  // of a word
+
+  std::span<const ContactPlace> places;  // each once
+  const std::uint64_t* sets = nullptr;   // of each block, then of each sample, in their order
+  std::uint32_t blocks = 0, words = 0;   // of sets before those of samples; words of each set
+
+  ContactPlace place(std::uint32_t word, int bit) const {
+    return places[std::size_t{word} * kBits + static_cast<std::size_t>(bit)];
+  }
+  // Return the set of a block or sample, by its place in the cell.
+  std::span<const std::uint64_t> of_block(std::uint32_t k) const {
+    return {sets + std::size_t{k} * words, words};
+  }
+  std::span<const std::uint64_t> of_sample(std::uint32_t k) const { return of_block(blocks + k); }
+};
+
+// Where the cells of a level lie. A sample lies in the cube of its centre, and a large one in those
+// with their middle in its ball, too, so that neighbouring samples have neighbouring cubes at
+// coarse levels. Immutable.
 class LevelPlaces {
  public:
   LevelPlaces(const SpatialLevel& level, double tool_radius);
@@ -26,73 +46,65 @@ class LevelPlaces {
   // Returns the cube of the grid that holds a place, which is given from the tool's centre of
   // mass, m.
   ContactPlace at(Vec3 place) const;
-  // Returns the cube of a sample's centre, and of large samples those with their middle in its
-  // ball, so that neighbouring samples have neighbouring cubes at coarse levels, too.
-  std::span<const ContactPlace> of_sample(std::uint32_t sample) const {
-    return {of_samples_.data() + begin_of_sample_[sample],
-            of_samples_.data() + begin_of_sample_[sample + 1]};
-  }
-  // Returns those of a block's samples, each once.
-  std::span<const ContactPlace> of_block(std::uint32_t block) const {
-    return {of_blocks_.data() + begin_of_block_[block],
-            of_blocks_.data() + begin_of_block_[block + 1]};
+  CellPlaces of_cell(std::uint32_t row) const {
+    const Cell& cell = cells_[row];
+    const std::size_t count = cells_[row + 1].place - cell.place;
+    return {{places_.data() + cell.place, count},
+            sets_.data() + cell.set,
+            cell.blocks,
+            words_for(count)};
   }
 
  private:
-  void add_sample(const ToolPiece& sample);
+  static constexpr std::uint32_t kBits = CellPlaces::kBits;
 
-  double edge_;  // m
-  std::vector<ContactPlace> of_samples_, of_blocks_;
-  // Where the places of each sample and block begin, and one past the last.
-  std::vector<std::uint32_t> begin_of_sample_{0}, begin_of_block_{0};
+  // Where the places and sets of a cell begin.
+  struct Cell {
+    std::size_t place = 0, set = 0;
+    std::uint32_t blocks = 0;
+  };
+
+  static std::uint32_t words_for(std::size_t places) {
+    return static_cast<std::uint32_t>((places + kBits - 1) / kBits);
+  }
+  void add_cell(const CellView& cell, std::span<const ContactPlace> of_samples,
+                std::span<const std::size_t> end_of_sample);
+  void append_places_of(const ToolPiece& sample, std::vector<ContactPlace>& places) const;
+
+  double edge_;                  // m
+  std::vector<Cell> cells_{{}};  // and one past the last
+  std::vector<ContactPlace> places_;
+  std::vector<std::uint64_t> sets_;
 };
 
-// Joins places by union-find. Belongs to one thread.
+// Finds which marked places hang together, by union-find. Belongs to one thread.
 class ContactRegions {
  public:
-  void start() {
-    for (const ContactPlace place : marked_) is_marked_[place] = false;
-    marked_.clear();
-  }
-  // Begins a cell: all places that are marked until the next one hang together.
-  void begin_cell() { of_cell_ = last_ = kNone; }
-  void mark(std::span<const ContactPlace> places) {
-    for (const ContactPlace place : places) mark(place);
-  }
+  void start() { rows_.fill(0); }
   void mark(ContactPlace place) {
-    if (place == of_cell_ || place == last_) return;
-    if (!is_marked_[place]) {
-      is_marked_[place] = true;
-      parent_[place] = place;
-      marked_.push_back(place);
-    }
-    if (of_cell_ == kNone) of_cell_ = place;
-    join(of_cell_, place);
-    last_ = place;
+    rows_[place / kPlacesPerEdge] |= static_cast<Row>(1U << place % kPlacesPerEdge);
   }
-  // Returns a place of the last cell, kNone if it has none.
-  std::uint32_t of_cell() const { return of_cell_; }
-  // Joins marked places in neighbouring cubes, after all cells.
+  // Joins marked places in neighbouring cubes, after all are marked and before others are joined.
   void join_neighbors();
+  void join(ContactPlace a, ContactPlace b) {
+    const ContactPlace x = region_of(a), y = region_of(b);
+    x < y ? parent_[y] = x : parent_[x] = y;
+  }
   // Returns the place that stands for all that one is joined with.
   ContactPlace region_of(ContactPlace place) {
     while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
     return place;
   }
 
-  static constexpr std::uint32_t kNone = UINT32_MAX;
-
  private:
-  void join(std::uint32_t a, std::uint32_t b) {
-    const ContactPlace x = region_of(static_cast<ContactPlace>(a)),
-                       y = region_of(static_cast<ContactPlace>(b));
-    x < y ? parent_[y] = x : parent_[x] = y;
-  }
+  using Row = std::uint16_t;  // of cubes along z, a bit each
+  static_assert(kPlacesPerEdge == 16);
 
-  std::array<bool, kContactPlaces> is_marked_{};
+  void join_in_row(std::uint32_t row);
+  void join_rows(std::uint32_t row, std::uint32_t other);
+
+  std::array<Row, kPlacesPerEdge * kPlacesPerEdge> rows_{};  // of marked places, by x and y
   std::array<ContactPlace, kContactPlaces> parent_{};
-  std::vector<ContactPlace> marked_;
-  std::uint32_t of_cell_ = kNone, last_ = kNone;
 };
 
 }  // namespace vpm
