@@ -5,6 +5,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
+#include "libvpm/file/nearest_word.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/pose_columns.h"
 #include "libvpm/recording/pose_numbers.h"
@@ -225,6 +226,39 @@ ObjectPose pose_of_object(const json& object) {
   refuse("no pose in the object; it has " + keys_of(object), {},
          "give \"pose\" (7 numbers) or \"matrix\" (4x4 by rows), or \"position\" with x, y, z and "
          "\"orientation\" with x, y, z, w");
+}
+
+std::span<const std::string> keys_of_poses() {
+  static const std::vector<std::string> kKeys{"id",          "tool",     "solids",
+                                              "pose",        "matrix",   "transform_matrix",
+                                              "transform",   "position", "orientation",
+                                              "translation", "rotation", "time",
+                                              "timestamp",   "stamp",    "t"};
+  return kKeys;
+}
+
+namespace {
+
+// True if one key is written nearly as another. Short words have others beside them, such as "time"
+// has "type": of these a letter is added or left out, of long ones two may be wrong.
+bool is_misspelt(const std::string& key, const std::string& meant) {
+  constexpr std::size_t kShort = 6, kLong = 8, kLongest = 30;  // letters
+  if (meant.size() < 3 || key.size() > kLongest) return false;
+  if (meant.size() < kShort && key.size() == meant.size()) return false;
+  return file::edits_between(key, meant) <= (meant.size() < kLong ? 1 : 2);
+}
+
+}  // namespace
+
+void refuse_misspelt_keys(const json& object) {
+  const auto known = keys_of_poses();
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::count(known, key) > 0) continue;
+    const auto meant = std::ranges::find_if(
+        known, [&](const std::string& name) { return is_misspelt(key, name); });
+    if (meant != known.end())
+      refuse("there is no key '" + file::shown(key) + "'", {}, "is '" + *meant + "' meant?");
+  }
 }
 
 std::vector<Pose> poses_of_solids(const json& list, double& largest_deviation) {

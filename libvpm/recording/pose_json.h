@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -53,6 +55,13 @@ struct ObjectPose {
 // orientation as ROS has them, also within "pose" or "transform"; or a list or object "tool".
 // Throws a refusal that names the keys wanted.
 ObjectPose pose_of_object(const nlohmann::json& object);
+
+// Returns the keys of objects of poses that readers know.
+std::span<const std::string> keys_of_poses();
+
+// Throws a refusal of a key that is nearly one of those, which would be passed over in silence:
+// other keys are of those who write the object.
+void refuse_misspelt_keys(const nlohmann::json& object);
 
 // Returns the poses of a list of a scene's solids, mesh to world: each a list of numbers or an
 // object, as a tool's. Raises `largest_deviation` to that of their rotations. Throws a refusal for

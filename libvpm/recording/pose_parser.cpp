@@ -54,6 +54,7 @@ ToldPose PoseParser::of_numbers(std::vector<double> n, std::optional<double> tim
 
 ToldPose PoseParser::of_value(const nlohmann::json& value) {
   if (!value.is_object()) return of_numbers(numbers_of(value));
+  refuse_misspelt_keys(value);
   const std::optional<double> time = time_of(value);
   const ObjectPose pose = pose_of_object(value);
   time_ = time;

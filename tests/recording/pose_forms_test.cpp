@@ -133,6 +133,25 @@ TEST(PoseForms, ObjectsOfRosAreRead) {
   EXPECT_TRUE(says(refused(R"({"place": 1, "q": 2})"), R"(it has "place", "q"; give "pose")"));
 }
 
+TEST(PoseForms, KeysNearlyThoseOfPosesAreRefusedWithAGuess) {
+  const std::string pose = "\"pose\": [1,0,0,0,0,0,1]";
+  for (const auto& [key, meant] : {std::pair{"tme", "time"},
+                                   {"times", "time"},
+                                   {"solid", "solids"},
+                                   {"tools", "tool"},
+                                   {"timestmap", "timestamp"},
+                                   {"Solids", "solids"}}) {
+    const std::string line = "{" + pose + ", \"" + key + "\": 3}";
+    const std::string refusal = refused("{" + pose + "}\n" + line + "\n");
+    EXPECT_TRUE(says(refusal, std::string("line 2: there is no key '") + key + "'")) << refusal;
+    EXPECT_TRUE(says(refusal, std::string("is '") + meant + "' meant?")) << refusal;
+  }
+  for (const std::string other : {"type", "name", "metric", "frame_id", "header", "child_frame_id",
+                                  "sharpness", "file_path", "seq", "role", "note", "label", "score",
+                                  "covariance", "volume", "grasp", "camera", "robot", "timeout"})
+    EXPECT_EQ(read_all_poses("{" + pose + ", \"" + other + "\": 3}\n").x, Numbers{1}) << other;
+}
+
 TEST(PoseForms, MatricesByColumnsAreTold) {
   for (const char* const text :
        {"1 0 0 0\n0 1 0 0\n0 0 1 0\n5 2 3 1\n", "1 0 0 0 0 1 0 0 0 0 1 0 5 2 3 1\n",

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libvpm/file/nearest_word.h"
 #include "libvpm/file/text.h"
-#include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
 namespace {
@@ -20,7 +20,7 @@ std::string nearest_option(const CLI::App& app, const std::string& given) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return nearest_word(given, names, 5);  // letters, with the dashes
+  return file::nearest_word(given, names, 5);  // letters, with the dashes
 }
 
 // Returns "there is no option --tol; is --tool meant?", or CLI11's words if none is near.

@@ -11,6 +11,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
+#include "libvpm/file/nearest_word.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/pose_json.h"
@@ -19,7 +20,6 @@
 #include "tools/common/error_text.h"
 #include "tools/common/length_units.h"
 #include "tools/common/mesh_tool.h"
-#include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
 namespace {
@@ -50,7 +50,7 @@ void check_keys(const json& object, const std::vector<std::string>& known,
   if (!object.is_object()) refuse("it is no object", where, "write {\"" + known.front() + "\": …}");
   for (const auto& [key, value] : object.items()) {
     if (std::ranges::count(known, key) > 0) continue;
-    const std::string guess = guess_of_word(key, known);
+    const std::string guess = file::guess_of_word(key, known);
     refuse("there is no key '" + file::shown(key) + "'", where,
            guess.empty() ? "known are " + file::listed(known) : guess);
   }
@@ -131,7 +131,7 @@ void check_names_once(const Assembly& assembly) {
 // Refuses a name that is no part's, with the one that may be meant.
 [[noreturn]] void refuse_part(const std::string& name, const std::vector<std::string>& names,
                               const std::string& where) {
-  const std::string guess = guess_of_word(name, names);
+  const std::string guess = file::guess_of_word(name, names);
   refuse("there is no part '" + file::shown(name) + "'", where,
          guess.empty() ? "the parts are " + file::listed(names) : guess);
 }

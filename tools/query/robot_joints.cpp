@@ -5,9 +5,9 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
+#include "libvpm/file/nearest_word.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
-#include "tools/common/nearest_word.h"
 
 namespace vpm::tools {
 namespace {
@@ -65,7 +65,7 @@ class LineReader {
         configuration.id = value.dump();
         continue;
       }
-      const std::string guess = guess_of_word(name, names_);
+      const std::string guess = file::guess_of_word(name, names_);
       refuse("the robot has no joint '" + file::shown(name) + "'", where,
              guess.empty() ? "its joints are " + file::listed(names_) : guess);
     }

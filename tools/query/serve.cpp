@@ -14,6 +14,7 @@
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
+#include "libvpm/file/nearest_word.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/import_cloud.h"
@@ -21,7 +22,6 @@
 #include "libvpm/recording/pose_numbers.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
-#include "tools/common/nearest_word.h"
 #include "tools/query/cloud_scene.h"
 #include "tools/query/contact_lines.h"
 #include "tools/query/mode.h"
@@ -59,14 +59,14 @@ Json request_of(const std::string& line) {
 // Throws Error(refused) for what no answer is known to: a key that is none of a request's, of a
 // pose's (pose_json.h), or of a message of ROS.
 void check(const Json& request) {
-  static const std::vector<std::string> kKnown{
-      "id",       "cloud",         "camera_pose", "solids",   "pose",      "tool",
-      "time",     "timestamp",     "stamp",       "t",        "matrix",    "transform_matrix",
-      "position", "orientation",   "translation", "rotation", "transform", "header",
-      "frame_id", "child_frame_id"};
+  static const std::vector<std::string> kKnown = [] {
+    std::vector<std::string> known{"cloud", "camera_pose", "header", "frame_id", "child_frame_id"};
+    known.insert(known.begin(), keys_of_poses().begin(), keys_of_poses().end());
+    return known;
+  }();
   for (const auto& [key, value] : request.items()) {
     if (std::ranges::count(kKnown, key) > 0) continue;
-    const std::string guess = guess_of_word(key, kKnown);
+    const std::string guess = file::guess_of_word(key, kKnown);
     refuse("there is no key '" + file::shown(key) + "'", {}, guess.empty() ? kRequest : guess);
   }
   if (request.contains("camera_pose") && !request.contains("cloud"))

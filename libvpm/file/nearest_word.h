@@ -1,10 +1,14 @@
 // Finds the word that somebody meant.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 
-namespace vpm::tools {
+namespace vpm::file {
+
+// Returns how many letters must be changed, added or left out to make one word of the other.
+std::size_t edits_between(const std::string& a, const std::string& b);
 
 // Returns the word that is nearly the one given, at most two letters changed, added or left out, or
 // that begins as it does; the first of the nearest, and empty if none is near. Words of `shortest`
@@ -15,4 +19,4 @@ std::string nearest_word(const std::string& given, std::span<const std::string> 
 // Returns "is 'bracket' meant?" of the nearest word; empty if none is near.
 std::string guess_of_word(const std::string& given, std::span<const std::string> words);
 
-}  // namespace vpm::tools
+}  // namespace vpm::file

@@ -1,14 +1,11 @@
-#include "tools/common/nearest_word.h"
+#include "libvpm/file/nearest_word.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
-namespace vpm::tools {
-namespace {
+namespace vpm::file {
 
-// Returns how many letters must be changed, added or left out to make one word of the other.
 std::size_t edits_between(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
@@ -21,8 +18,6 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   }
   return row[b.size()];
 }
-
-}  // namespace
 
 std::string nearest_word(const std::string& given, std::span<const std::string> words,
                          std::size_t shortest) {
@@ -43,4 +38,4 @@ std::string guess_of_word(const std::string& given, std::span<const std::string>
   return best.empty() ? "" : "is '" + best + "' meant?";
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm::file
