@@ -32,6 +32,9 @@ COMMANDS = [
      "vpm-query --tool small.vpmg --frames no_camera --trajectory still.txt --remove out.jsonl", "make clouds of the depth images",
      f"vpm-normals plain {CAMERA} -o made --quiet; echo '{{\"remove\":[\"small.off@{POSE}\"]}}' > out.jsonl; "
      "vpm-query --tool small.vpmg --frames made --trajectory still.txt --remove out.jsonl"),
+    # One frame, and the folder of a recording's clouds
+    (f"mkdir -p frames; vpm-normals wall.pgm {CAMERA} -o frames", r"--output frames is a folder, and wall.pgm is one frame: name a file, such as (\S+)",
+     f"vpm-normals wall.pgm {CAMERA} -o {{0}} --force"),
     # Several cameras
     ("vpm-normals points.ply -o out.vpmc --quiet; vpm-query --tool small.vpmg --cloud wall.vpmc --cloud out.vpmc --poses poses.txt",
      "give it as the only (--cloud), or make it of the depth image by vpm-normals",

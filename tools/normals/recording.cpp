@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/mcap/mcap_file.h"
@@ -26,12 +27,24 @@ namespace fs = std::filesystem;
 // Most warnings about frames that are printed.
 constexpr std::size_t kMostWarnings = 5;
 
+// Throws a refusal of one image whose output is a folder.
+void refuse_one_image(const Arguments& a) {
+  std::error_code fault;
+  if (!fs::is_regular_file(a.depth, fault) || !mcap::files_of(a.depth).empty()) return;
+  const auto content = file::sniff(file::read_all(a.depth));
+  if (!content || !content->scan) return;
+  const fs::path name = fs::path(a.depth).filename().replace_extension(".vpmc");
+  refuse_usage("--output " + a.output + " is a folder, and " + a.depth +
+               " is one frame: name a file, such as " + (fs::path(a.output) / name).string());
+}
+
 void check(const Arguments& a) {
   if (a.output.empty() || a.output == "-")
     refuse_usage("the input is a recording: give -o FOLDER for its clouds");
   if (!a.report.empty() || !a.export_path.empty() || !a.view.empty())
     refuse_usage("--report, --export and --view are for one frame: leave them out, or name it");
   check_camera(a);
+  refuse_one_image(a);
   std::error_code fault;
   if (fs::equivalent(a.depth, a.output, fault))
     refuse_usage("--output " + a.output + " is the folder of the frames: name another one");

@@ -31,9 +31,15 @@ class LineReader {
     } catch (const Error& fault) {
       refuse("it is " + fault.problem(), where, kForms);
     }
-    if (line.is_array()) return of_array(line, where);
-    if (line.is_object()) return of_object(line, where);
-    refuse("it is no object and no array", where, kForms);
+    if (!line.is_array() && !line.is_object())
+      refuse("it is no object and no array", where, kForms);
+    Configuration configuration = line.is_array() ? of_array(line, where) : of_object(line, where);
+    try {
+      link_poses(robot_, configuration.values);
+    } catch (const Error& fault) {  // of a value that no joint can have
+      refuse(fault.problem(), where, "values are in radians and metres");
+    }
+    return configuration;
   }
 
  private:

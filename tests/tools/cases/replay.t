@@ -102,6 +102,11 @@ $ vpm-normals steps -o clouds --intrinsics 60,60,31.5,23.5
 $ vpm-normals tum -o tum/. --intrinsics 60,60,31.5,23.5 --force
 2> vpm-normals: error: --output tum/. is the folder of the frames: name another one
 [2]
+$ cp $SOURCE/tests/tools/inputs/wall.png one.png; mkdir single; for frame in one.png tum/../one.png; do vpm-normals $frame -o single --intrinsics 60,60,31.5,23.5; done
+2> vpm-normals: error: --output single is a folder, and one.png is one frame: name a file, such as single/one.vpmc
+2> vpm-normals: error: --output single is a folder, and tum/../one.png is one frame: name a file, such as single/one.vpmc
+[2]
+$ ls single
 $ vpm-normals steps --report - --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: the input is a recording: give -o FOLDER for its clouds
 [2]

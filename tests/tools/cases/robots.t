@@ -64,8 +64,8 @@ $ for l in '[1]' '{"reech":1}' '{"reach":"far"}' '7' '[1,' '[1,1e308]'; do echo 
 2> vpm-query: error: standard input, line 1: the value of joint 'reach' is no number; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
 2> vpm-query: error: standard input, line 1: it is no object and no array; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
 2> vpm-query: error: standard input, line 1: it is not JSON: it cannot be read from line 1 on; write {"joint": 0.5, …}, or [0.5, …] with a value for each movable joint
-2> vpm-query: error: the value of joint 'turn' is not finite, or beyond 2^40
-[2]
+2> vpm-query: error: standard input, line 1: the value of joint 'turn' is not finite, or beyond 2^40; values are in radians and metres
+[1]
 $ echo nothing > none.urdf; echo '<robot><link' > half.urdf; for f in none half; do vpm-query --urdf $f.urdf --joints joints.jsonl; done
 2> vpm-query: error: none.urdf: this is no XML; give a URDF file
 2> vpm-query: error: half.urdf: this is no XML from line 1 on; give a URDF file
