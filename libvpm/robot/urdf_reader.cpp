@@ -107,8 +107,10 @@ class Reader {
       const urdf::LinkConstSharedPtr link = model.getLink(attribute(*element, "name"));
       std::size_t written = 0;
       for (const TiXmlElement* one = element->FirstChildElement("collision"); one != nullptr;
-           one = one->NextSiblingElement("collision"))
+           one = one->NextSiblingElement("collision")) {
         ++written;
+        check_one_shape(*one, attribute(*element, "name"));
+      }
       if (!link || link->collision_array.size() == written) continue;
       refuse("line " + std::to_string(element->Row()) + ": a <collision> of link '" +
                  file::shown(link->name) + "' cannot be read",
@@ -116,6 +118,20 @@ class Reader {
              "its <geometry> is one box, cylinder, sphere or mesh, all of whose numbers are there, "
              "finite and with a decimal point; check_urdf (Debian: liburdfdom-tools) says more");
     }
+  }
+
+  // Throws Error(refused) if a collision has several shapes, of which urdfdom takes the first.
+  void check_one_shape(const TiXmlElement& collision, const std::string& link) const {
+    std::size_t shapes = 0;
+    for (const TiXmlElement* geometry = collision.FirstChildElement("geometry");
+         geometry != nullptr; geometry = geometry->NextSiblingElement("geometry"))
+      for (const TiXmlElement* shape = geometry->FirstChildElement(); shape != nullptr;
+           shape = shape->NextSiblingElement())
+        ++shapes;
+    if (shapes < 2) return;
+    refuse("line " + std::to_string(collision.Row()) + ": a <collision> of link '" +
+               file::shown(link) + "' has several shapes",
+           path_, "give each a <collision> of its own");
   }
 
   // Adds the link, and after it all that its joints lead to.

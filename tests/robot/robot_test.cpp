@@ -207,6 +207,25 @@ TEST_F(RobotTest, NoCollisionIsLost) {
     }
 }
 
+// Of several shapes in one collision urdfdom reads the first.
+TEST_F(RobotTest, NoShapeOfACollisionIsLost) {
+  const std::string box = "<box size=\"1 1 1\"/>", ball = "<sphere radius=\"1\"/>";
+  for (const std::string& inner :
+       {"<geometry>" + box + ball + "</geometry>",
+        "<geometry>" + ball + "<!-- and -->" + box + "</geometry>",
+        "<geometry>" + box + "</geometry><geometry>" + ball + "</geometry>"}) {
+    const std::string said =
+        refusal_of("<link name=\"a\"><collision>" + inner + "</collision></link>");
+    EXPECT_NE(said.find("line 1: a <collision> of link 'a' has several shapes; give each a "
+                        "<collision> of its own"),
+              std::string::npos)
+        << said;
+  }
+  EXPECT_EQ(refusal_of("<link name=\"a\"><collision><geometry><!-- a box -->" + box +
+                       "</geometry></collision></link>"),
+            "");
+}
+
 TEST_F(RobotTest, PairsAreIgnoredByJointsOrBySrdf) {
   using Pairs = std::vector<std::array<std::size_t, 2>>;
   const Robot robot =

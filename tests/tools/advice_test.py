@@ -98,7 +98,7 @@ UNTRIED = [
         "--unit mm", "another --unit",
     ]),
     ("stands in tests/robot, of URDF and SRDF files", [
-        "give the SRDF of this robot", "' is seen but has no collision geometry, and is left out: give it a <collision> with the geometry of its <visual>",
+        "give the SRDF of this robot", "give each a <collision> of its own", "' is seen but has no collision geometry, and is left out: give it a <collision> with the geometry of its <visual>",
         "make it fixed, or a chain of prismatic and revolute joints", 'write <axis xyz="0 0 1"/>',
         'write scale="1 1 1", or "0.001 0.001 0.001" for millimetres', "has a negative scale, and is mirrored; if that is not meant, write it without the sign",
         "fetch it, and write its path or package://PACKAGE/PATH", "correct the name in <mimic>", "let one of them have a value of its own",
