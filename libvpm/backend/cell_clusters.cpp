@@ -11,6 +11,13 @@ namespace {
 // Factor that keeps a cell's ball inside its cluster's in spite of rounding.
 constexpr double kRounding = 1 + 1e-12;
 
+constexpr std::size_t kGroupClusters = 8;
+constexpr std::uint32_t kGroupChildren = 8;         // most nodes below one of the tree of groups
+constexpr double kGroupReach = 2.5 * kPlanarReach;  // in tool radii
+// Factor that keeps a group's ball about the cells of its clusters, though not about the clusters'
+// own balls, however their projections are rounded.
+constexpr double kGroupRounding = 1 + 1e-9;
+
 Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& cells,
                    std::uint32_t begin, std::uint32_t end) {
   Box box;
@@ -44,6 +51,27 @@ void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin
   const std::uint32_t middle = halve(tool, out.cells, begin, end);
   add_clusters(tool, level, begin, middle, out);
   add_clusters(tool, level, middle, end, out);
+}
+
+// Adds the tree of groups [begin, end), which are side by side.
+void add_group_nodes(const ToolModel& tool, const Level& level,
+                     const std::vector<std::uint32_t>& cells, std::uint32_t begin,
+                     std::uint32_t end, ClusterGroups& out) {
+  const std::size_t node = out.tree.size();
+  const std::uint32_t count = end - begin;
+  if (count == 1) {
+    out.tree.push_back({out.groups[begin].ball, static_cast<std::uint32_t>(node + 1), begin});
+    return;
+  }
+  CellCluster ball = enclosing_cluster(tool, level, cells, out.groups[begin].ball.begin,
+                                       out.groups[end - 1].ball.end);
+  ball.radius *= kGroupRounding;
+  out.tree.push_back({ball});
+  const std::uint32_t children = std::min(count, kGroupChildren);
+  for (std::uint32_t k = 0; k < children; ++k)
+    add_group_nodes(tool, level, cells, begin + k * count / children,
+                    begin + (k + 1) * count / children, out);
+  out.tree[node].next = static_cast<std::uint32_t>(out.tree.size());
 }
 
 }  // namespace
@@ -112,6 +140,31 @@ CellClusters cluster_cells(const ToolModel& tool, const Level& level) {
     out.masses.push_back(mass_of(level, level.block_begin[i], level.block_begin[i + 1],
                                  tool.spheres[i].center - tool.center_of_mass));
   add_clusters(tool, level, 0, level.sphere_count, out);
+  return out;
+}
+
+// Groups consecutive clusters as long as their ball is within kGroupReach.
+ClusterGroups group_clusters(const ToolModel& tool, const Level& level,
+                             const CellClusters& clusters) {
+  ClusterGroups out;
+  const auto count = static_cast<std::uint32_t>(clusters.clusters.size());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const CellCluster& cluster = clusters.clusters[k];
+    if (!out.groups.empty() && k - out.groups.back().begin < kGroupClusters) {
+      CellGroup& last = out.groups.back();
+      const CellCluster ball =
+          enclosing_cluster(tool, level, clusters.cells, last.ball.begin, cluster.end);
+      if (ball.radius <= kGroupReach * tool.radius) {
+        last.ball = ball;
+        last.end = k + 1;
+        continue;
+      }
+    }
+    out.groups.push_back({cluster, k, k + 1});
+  }
+  for (CellGroup& group : out.groups) group.ball.radius *= kGroupRounding;
+  add_group_nodes(tool, level, clusters.cells, 0, static_cast<std::uint32_t>(out.groups.size()),
+                  out);
   return out;
 }
 

@@ -21,6 +21,27 @@ struct CellClusters {
   std::vector<BlockMass> masses;     // for each cell
 };
 
+// Groups clusters side by side: [begin, end), and the ball of their cells.
+struct CellGroup {
+  CellCluster ball;
+  std::uint32_t begin = 0, end = 0;
+};
+
+// Describes a node of the tree whose leaves are the groups; the nodes below it follow it.
+struct GroupTreeNode {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  CellCluster ball;             // of the cells of its groups
+  std::uint32_t next = 0;       // the first node after all nodes below this one
+  std::uint32_t group = kNone;  // index of a leaf's group
+};
+
+// Holds the groups of a level's clusters, and their tree.
+struct ClusterGroups {
+  std::vector<CellGroup> groups;
+  std::vector<GroupTreeNode> tree;
+};
+
 std::vector<BlockMass> block_masses(const Level& level);
 
 // Holds the samples of a level as queries ask them, and rows with the shapes of those beside faces
@@ -35,6 +56,8 @@ struct NumberedSamples {
 NumberedSamples numbered_samples(const Level& level);
 
 CellClusters cluster_cells(const ToolModel& tool, const Level& level);
+ClusterGroups group_clusters(const ToolModel& tool, const Level& level,
+                             const CellClusters& clusters);
 
 // Returns the ball that encloses the cells in rows [begin, end).
 CellCluster enclosing_cluster(const ToolModel& tool, const Level& level,

@@ -35,6 +35,8 @@ struct BodySum {
   bool knows_all_space = false;            // of a closed solid: what it does not hold is free
   // Variance of the volume, in squares of the tool's, if it is asked for and known; 0 of a solid.
   std::optional<ToolSum::Sum> variance{};
+  // Of points without a camera (TellsUnknown): the part of which nobody knows whether it is inside.
+  std::optional<ToolSum::Sum> unknown{};
 
   friend bool operator==(const BodySum&, const BodySum&) = default;
 };
@@ -48,6 +50,7 @@ class SceneSum {
     if (body.points) counts_points_ = true, points_ += *body.points;
     bodies_that_know_ += body.knows_all_space;
     if (body.unseen) see(*body.unseen, body.sum);
+    if (body.unknown) know(*body.unknown, body.sum);
     if (!body.variance) return;
     variance_.add(body.variance->value);
     ++bodies_of_variance_;
@@ -66,6 +69,12 @@ class SceneSum {
     visibility_ = visibility_of(unseen, sum.volume.real());
     ++cameras_;
   }
+  // Adds what points know whose body gave `sum`, all but the part `unknown`. What a camera sees
+  // goes before it.
+  VPM_HD void know(ToolSum::Sum unknown, const ToolSum& sum) {
+    if (cameras_ == 0) visibility_ = visibility_of({unknown, {}}, sum.volume.real());
+    ++clouds_;
+  }
 
   // Returns the part of the tool that is inside.
   VPM_HD double volume_fraction() const {
@@ -83,8 +92,11 @@ class SceneSum {
   VPM_HD std::uint32_t boundary() const { return boundary_; }
   VPM_HD std::uint32_t inside() const { return inside_; }
 
-  // True if the scene tells what is seen of the tool: if it has one camera, or only closed solids.
-  VPM_HD bool tells_sight() const { return cameras_ == 1 || knows_all_space(); }
+  // True if the scene tells what is seen of the tool: if it has one camera, or none but one cloud
+  // of points, or only closed solids.
+  VPM_HD bool tells_sight() const {
+    return cameras_ == 1 || (cameras_ == 0 && clouds_ == 1) || knows_all_space();
+  }
   VPM_HD Visibility visibility() const {
     return knows_all_space() ? visibility_of({}, volume_fraction()) : visibility_;
   }
@@ -115,9 +127,9 @@ class SceneSum {
   }
 
  private:
-  // Returns the fractions for a camera's body, or for solids, at which nothing is unseen. The
-  // weights of a tool's parts add up to 1 up to rounding: what that leaves was seen free, and what
-  // it exceeds is taken from the rest.
+  // Returns the fractions for a camera's body or points, or for solids, at which nothing is unseen.
+  // The weights of a tool's parts add up to 1 up to rounding: what that leaves was seen free, and
+  // what it exceeds is taken from the rest.
   VPM_HD static Visibility visibility_of(const UnseenSum& sum, double volume_fraction) {
     const auto least = [](double a, double b) { return a < b ? a : b; };
     Visibility is;
@@ -149,11 +161,11 @@ class SceneSum {
 
   Wide terms_[kTerms];  // volume, force, torque
   Wide variance_;
-  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, bodies_that_know_ = 0,
-                bodies_of_variance_ = 0;
+  std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0, cameras_ = 0, clouds_ = 0,
+                bodies_that_know_ = 0, bodies_of_variance_ = 0;
   std::uint32_t points_ = 0;
   bool counts_points_ = false;
-  Visibility visibility_;  // of the last camera
+  Visibility visibility_;  // of the last camera, or without one of the last points
 };
 
 // Returns the answer of a scene of one body.

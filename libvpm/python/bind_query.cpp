@@ -61,7 +61,7 @@ py::array column_of(const py::object& owner, const Value Result::*member) {
   py::detail::array_proxy(column.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return column;
 }
-// Returns what a camera knows, one fraction of it; None without a camera.
+// Returns what a camera or points know, one fraction of it; None where nothing is told.
 std::optional<double> fraction_of(const Result& result, double Visibility::*member) {
   if (!result.visibility) return std::nullopt;
   return (*result.visibility).*member;
@@ -148,17 +148,17 @@ void bind_results(py::module_& module, const py::object& collides_kind) {
       .def_property_readonly(
           "seen_free",
           [](const Result& result) { return fraction_of(result, &Visibility::seen_free); },
-          "Part of the tool before the surface that the scene's camera sees; None without a camera "
-          "and for the paper measure. With volume_fraction, unseen and out_of_view it adds up to "
-          "1.")
+          "Part of the tool before the surface that the scene's camera sees, or outside of what "
+          "its points show; None for the paper measure. With volume_fraction, unseen and "
+          "out_of_view it adds up to 1.")
       .def_property_readonly(
           "unseen", [](const Result& result) { return fraction_of(result, &Visibility::unseen); },
-          "Part that the surface hides, without the volume, or where nothing was measured; or "
-          "None.")
+          "Part that the surface hides, without the volume, where nothing was measured, or where a "
+          "scan is open; or None.")
       .def_property_readonly(
           "out_of_view",
           [](const Result& result) { return fraction_of(result, &Visibility::out_of_view); },
-          "Part outside of the image, or behind the camera; or None.")
+          "Part outside of the image, or behind the camera, 0 of points; or None.")
       .def_property_readonly(
           "force", [](const Result& result) { return array_of(result.wrench.force); },
           "Array (3,) in world axes, which pushes the tool out: N, or m^3 with stiffness 1.")

@@ -2,11 +2,11 @@
 // it learns of the surface. DepthSurface (a camera's image, by projection) and DiskSurface (points
 // without a camera, by the nearest disk) answer; README.md has the reasons.
 //
-// MeasuredBody is the concept; SeesFreeSpace, TellsSight, KnowsDepths, TellsEnclosed, BoundsGap and
-// HasOtherWalls are what some bodies know besides; SharesPixels, what is faster so. The functions
-// below ask for these and answer for bodies that do not have them; such an answer costs work or
-// leaves a refinement out, and is never wrong. All members are const and may be called by many
-// threads at once. Places are in the body's own frame, m.
+// MeasuredBody is the concept; SeesFreeSpace, TellsSight, KnowsDepths, TellsEnclosed, TellsUnknown,
+// BoundsGap and HasOtherWalls are what some bodies know besides; SharesPixels, what is faster so.
+// The functions below ask for these and answer for bodies that do not have them; such an answer
+// costs work or leaves a refinement out, and is never wrong. All members are const and may be
+// called by many threads at once. Places are in the body's own frame, m.
 #pragma once
 
 #include <concepts>
@@ -211,6 +211,15 @@ template <class B>
 concept TellsEnclosed = MeasuredBody<B> && requires(const B& body, Vec3 x) {
   { body.may_enclose() } -> std::same_as<bool>;
   { body.encloses(x) } -> std::same_as<bool>;
+};
+
+// True for a body without a camera that knows where nobody can tell whether it is solid: of a
+// classified ball of which nothing counts as inside. Its class follows from its point.
+template <class B>
+concept TellsUnknown = MeasuredBody<B> &&
+    requires(const B& body, const typename B::BallClass& in_ball) {
+  { body.is_unknown(in_ball) } -> std::same_as<bool>;
+  { B::class_by_point(in_ball.point, Vec3{}, 0.0) } -> std::same_as<typename B::BallClass>;
 };
 
 // True for a body whose side_of() asks pixels of an ambiguous ball, which lanes of a device share:

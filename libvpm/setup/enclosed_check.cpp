@@ -4,6 +4,7 @@
 #include <string>
 
 #include "libvpm/core/solid_angle.h"
+#include "libvpm/scene/points/disk_winding.h"
 
 namespace vpm {
 
@@ -37,7 +38,7 @@ void EnclosedCheck::see(const Pose& pose, std::size_t k, const Result& result) {
 std::optional<Remark> EnclosedCheck::remark() const {
   // A place that more directions lead behind the points from than before them is inside for a
   // query. Of one with half as many nobody can tell.
-  constexpr double kUnknown = 0.25;
+  constexpr double kUnknown = DiskWinding::kMayBeInside;
   const auto found = std::ranges::count_if(doubtful_.kept(), [&](const ToolPose& at) {
     return winding_.at(at.pose * tools_[at.tool]->spheres.front().center) > kUnknown;
   });

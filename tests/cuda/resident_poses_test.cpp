@@ -72,9 +72,9 @@ TEST_F(PosesOnADevice, HaveTheAnswersOfPosesOnTheHost) {
       on_device(tool_, {.device = kFirst, .stiffness = 300});
   std::vector<double> sevens, matrices;
   std::vector<Result> of_sevens, of_matrices;
-  const std::vector<AnyBody> one{image_}, two{points_, image_};
+  const std::vector<AnyBody> one{image_}, two{points_, image_}, points{points_};
   double touched = 0;
-  for (const auto& scene : {one, two}) {
+  for (const auto& scene : {one, two, points}) {
     sevens.clear(), matrices.clear(), of_sevens.clear(), of_matrices.clear();
     for (int k = 0; k < kCount; ++k) {
       const auto seven = numbers_of(k, kCount);

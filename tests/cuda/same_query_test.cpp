@@ -353,6 +353,36 @@ TEST(EnclosedToolOnDevice, GivesTheSame) {
   }
 }
 
+// Passes below the upper half of a ball, a box without its lower face, and out of a room, where
+// points do not tell whether the tool is inside.
+TEST(UnknownOnDevice, IsTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  Cloud half, room, open;
+  add_ball(
+      0.3, 0.02, [](Vec3 n) { return n.z > 0; }, half);
+  add_box({}, {0.4, 0.4, 0.4}, -1, 0.02, room);
+  Cloud box;
+  add_box({}, {0.3, 0.3, 0.3}, 1, 0.02, box);
+  for (std::size_t k = 0; k < box.size(); ++k)
+    if (box.normals[k].z >= 0)
+      add_point(widen(box.positions[k]), widen(box.normals[k]), 0.02, open);
+  constexpr int kPoses = testing::effort(160);
+  double unknown = 0;
+  for (const Cloud& scan : {half, room, open}) {
+    const AnyBody cloud(scan);
+    std::vector<Pose> poses = poses_of(kPoses);
+    for (int k = 0; k < kPoses; ++k) poses[k].translation.z = 0.7 - 1.4 * k / (kPoses - 1);
+    for (const double z : {-0.33, -0.45, 0.6}) poses.push_back({{}, {0.01, 0.02, z}});
+    for (const ToolModel& tool :
+         {testing::lattice_cube(0.2, 5, 3), testing::lattice_cube(0.25, 20, 1)})
+      for (const Result& result : same_answers(tool, cloud, poses)) {
+        ASSERT_TRUE(result.visibility);
+        unknown += result.visibility->unseen;
+      }
+  }
+  EXPECT_GT(unknown, 3);
+}
+
 // Alternates small and large tools, more than one launch takes, and one without a pose.
 class ToolsTogether : public ::testing::TestWithParam<bool> {
  protected:

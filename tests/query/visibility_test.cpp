@@ -199,9 +199,14 @@ TEST(Visibility, IsOfOneCamera) {
   const Pose pose{generic_rotation(), {0.3, 0, 1}};
   const Result alone = query.run(image, pose);
   ASSERT_TRUE(alone.visibility);
-  EXPECT_FALSE(query.run(points, pose).visibility);
   EXPECT_FALSE(query.run(std::array{image, image}, pose).visibility);
   EXPECT_EQ(query.run(std::array{image, points}, pose).visibility, alone.visibility);
+  EXPECT_EQ(query.run(std::array{points, image}, pose).visibility, alone.visibility);
+  // Points say free where a camera that is there, too, does not look.
+  const Pose behind{generic_rotation(), {0.3, 0, -1}};
+  EXPECT_EQ(query.run(points, behind).visibility->seen_free, 1);
+  for (const auto& bodies : {std::array{image, points}, std::array{points, image}})
+    EXPECT_EQ(query.run(bodies, behind).visibility->out_of_view, 1);
   QueryOptions paper;
   paper.measure = Measure::paper;
   EXPECT_FALSE(ToolQuery(tool, paper).run(image, pose).visibility);

@@ -175,8 +175,8 @@ void declare_measure(CLI::App& app, Arguments& a) {
 
 void declare_collisions(CLI::App& app, Arguments& a) {
   app.add_flag("--collides", a.collides,
-               "Say whether the tool collides: yes, no, or unknown where too much of it is unseen; "
-               "exit status 10 of a hit, else 11 if a pose is unknown");
+               "Say whether the tool collides: yes, no, or unknown where too much of it is unseen, "
+               "or where a scan is open; exit status 10 of a hit, else 11 if a pose is unknown");
   app.add_flag("--collides-only", a.collides_only,
                "The same, and nothing else: lines have no volume, force or torque, and the answer "
                "comes as soon as it is sure");

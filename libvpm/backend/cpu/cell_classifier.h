@@ -127,6 +127,7 @@ class CellClassifier {
     const CellCluster& whole = work_.level.cluster(root);
     const Vec3 center = work_.to_surface * whole.center;
     const BallClass in_ball = work_.surface.classify_ball(center, whole.radius);
+    if constexpr (TellsUnknown<Surface>) work_.states.cluster_points[root] = in_ball.point;
     ClusterClass found =
         class_of_cluster(work_.surface, in_ball, center, whole.radius, work_.tool_radius.length);
     // A flood asks the middle only where it comes.

@@ -71,6 +71,7 @@ struct CellStates {
         squared_gaps(level.size()),
         far(level.most_pieces()),
         planes(level.roots().size()),
+        cluster_points(level.roots().size()),
         parts(1) {
     cut.reserve(level.size());
     cut_clusters.reserve(level.roots().size());
@@ -126,6 +127,8 @@ struct CellStates {
   std::vector<PieceIndex> far;       // far pieces, from SpatialLevel::first_piece() of each cell on
   // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
+  // The point of the class of each cluster's ball, by root, for bodies that tell what is unknown.
+  std::vector<std::uint32_t> cluster_points;
   std::vector<std::uint32_t> open_groups;  // not known to be free before they are classified
   std::vector<std::uint32_t> uniform;      // roots of clusters to be pushed along one normal
   std::vector<std::uint32_t> cut;          // rows of cut cells, ascending

@@ -16,6 +16,7 @@
 #include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/pose_memory.h"
 #include "libvpm/backend/cpu/spatial_level.h"
+#include "libvpm/backend/cpu/unknown_cells.h"
 #include "libvpm/backend/cpu/volume_variance.h"
 #include "libvpm/backend/cpu/whole_cells.h"
 #include "libvpm/core/parallel.h"
@@ -80,7 +81,7 @@ class RefinedMeasure {
     result.inside = add_up(work, inside, region, result.sum);
     if (contacts_) contacts_->run(work);
     if (tells_variance_) result.variance = variance_of(work);
-    if constexpr (TellsSight<Surface>) result.unseen = cells_.unseen;
+    tell_unseen(work, result);
     if (memory == nullptr) return result;
     if (result.boundary + result.inside > 0)
       remember(work, to_world, inside, *memory);
@@ -118,13 +119,19 @@ class RefinedMeasure {
     }
     return std::nullopt;
   }
+  // Tells of what does not count how much was not seen. It must be decided which cells count.
+  template <class Surface>
+  static void tell_unseen(const PoseWork<Surface>& work, BodySum& result) {
+    if constexpr (TellsSight<Surface>) result.unseen = work.states.unseen;
+    if constexpr (TellsUnknown<Surface>) result.unknown = UnknownCells(work).sum();
+  }
   // Returns what a body gives whose cells were all found free.
   template <class Surface>
   BodySum all_free(const PoseWork<Surface>& work, PoseMemory* memory) {
     BodySum result;
     work.states.cut.clear();
     if (tells_variance_) result.variance = variance_of(work);
-    if constexpr (TellsSight<Surface>) result.unseen = work.states.unseen;
+    tell_unseen(work, result);
     if (memory != nullptr) memory->turn();  // in free space there is nothing to look for
     return result;
   }

@@ -6,25 +6,18 @@ namespace vpm {
 namespace {
 
 constexpr std::uint32_t kFewCells = 8;  // a node of no more has no children
-constexpr std::size_t kGroupClusters = 8;
-constexpr std::uint32_t kGroupChildren = 8;         // most nodes below one of the tree of groups
-constexpr double kGroupReach = 2.5 * kPlanarReach;  // in tool radii
-// Factor that keeps a group's ball about the cells of its clusters, though not about the clusters'
-// own balls, however their projections are rounded.
-constexpr double kGroupRounding = 1 + 1e-9;
 
 }  // namespace
 
 SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
   CellClusters clusters = cluster_cells(tool, level);
+  grouped_ = group_clusters(tool, level, clusters);
   spheres_ = std::move(clusters.cells);
   for (const CellCluster& c : clusters.clusters) {
     root_of_row_.resize(c.end, static_cast<std::uint32_t>(roots_.size()));
     roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
     add_nodes(tool, level, c.begin, c.end);
   }
-  add_groups(tool, level);
-  add_group_nodes(tool, level, 0, static_cast<std::uint32_t>(groups_.size()));
   const std::vector<BlockMass> block_masses = vpm::block_masses(level);
   NumberedSamples numbered = numbered_samples(level);
   face_rows_ = std::move(numbered.rows);
@@ -48,46 +41,6 @@ void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uin
     add_nodes(tool, level, middle, end);
   }
   nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
-}
-
-// Groups consecutive clusters as long as their ball is within kGroupReach.
-void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
-  const auto first_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.begin; };
-  const auto end_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.end; };
-  const auto count = static_cast<std::uint32_t>(roots_.size());
-  for (std::uint32_t root = 0; root < count; ++root) {
-    if (!groups_.empty() && root - groups_.back().begin < kGroupClusters) {
-      CellGroup& last = groups_.back();
-      const CellCluster ball =
-          enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
-      if (ball.radius <= kGroupReach * tool.radius) {
-        last.ball = ball;
-        last.end = root + 1;
-        continue;
-      }
-    }
-    groups_.push_back({nodes_[roots_[root]].cluster, root, root + 1});
-  }
-  for (CellGroup& group : groups_) group.ball.radius *= kGroupRounding;
-}
-
-// Adds the tree of groups [begin, end), which are side by side.
-void SpatialLevel::add_group_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
-                                   std::uint32_t end) {
-  const std::size_t node = group_tree_.size();
-  const std::uint32_t count = end - begin;
-  if (count == 1) {
-    group_tree_.push_back({groups_[begin].ball, static_cast<std::uint32_t>(node + 1), begin});
-    return;
-  }
-  CellCluster ball = enclosing_cluster(tool, level, spheres_, groups_[begin].ball.begin,
-                                       groups_[end - 1].ball.end);
-  ball.radius *= kGroupRounding;
-  group_tree_.push_back({ball});
-  const std::uint32_t children = std::min(count, kGroupChildren);
-  for (std::uint32_t k = 0; k < children; ++k)
-    add_group_nodes(tool, level, begin + k * count / children, begin + (k + 1) * count / children);
-  group_tree_[node].next = static_cast<std::uint32_t>(group_tree_.size());
 }
 
 void SpatialLevel::add_cell(const ToolModel& tool, const Level& level,

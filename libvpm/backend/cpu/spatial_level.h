@@ -15,21 +15,6 @@ struct CellTreeNode {
   std::uint32_t next = 0;  // the first node after all nodes below this one
 };
 
-// Groups clusters side by side: roots [begin, end), and the ball of their cells.
-struct CellGroup {
-  CellCluster ball;
-  std::uint32_t begin = 0, end = 0;
-};
-
-// Describes a node of the tree whose leaves are the groups; the nodes below it follow it.
-struct GroupTreeNode {
-  static constexpr std::uint32_t kNone = UINT32_MAX;
-
-  CellCluster ball;             // of the cells of its groups
-  std::uint32_t next = 0;       // the first node after all nodes below this one
-  std::uint32_t group = kNone;  // index of a leaf's group
-};
-
 // Lists parts of the tool, coordinate by coordinate, as vectors load them: three more numbers may
 // be read past the last.
 struct FreeParts {
@@ -80,8 +65,8 @@ class SpatialLevel {
   const std::vector<std::uint32_t>& roots() const { return roots_; }         // top nodes
   std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
   const CellCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
-  const std::vector<CellGroup>& groups() const { return groups_; }
-  const std::vector<GroupTreeNode>& group_tree() const { return group_tree_; }
+  const std::vector<CellGroup>& groups() const { return grouped_.groups; }
+  const std::vector<GroupTreeNode>& group_tree() const { return grouped_.tree; }
 
  private:
   struct Cell {
@@ -91,9 +76,6 @@ class SpatialLevel {
   };
 
   void add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end);
-  void add_groups(const ToolModel& tool, const Level& level);
-  void add_group_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
-                       std::uint32_t end);
   void add_cell(const ToolModel& tool, const Level& level, std::span<const CellSample> samples,
                 std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
@@ -114,8 +96,7 @@ class SpatialLevel {
   std::vector<std::uint32_t> neighbor_begin_, neighbors_;
   std::vector<CellTreeNode> nodes_;
   std::vector<std::uint32_t> roots_, root_of_row_;
-  std::vector<CellGroup> groups_;
-  std::vector<GroupTreeNode> group_tree_;
+  ClusterGroups grouped_;
 };
 
 }  // namespace vpm

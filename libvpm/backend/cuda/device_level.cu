@@ -157,6 +157,9 @@ void DeviceLevel::add_tasks(const ToolModel& tool, const Level& level) {
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
       balls[clusters.cells[k]] = {cluster.center, cluster.radius};
   view_.cluster_balls = memory_.copy(balls);
+  view_.clusters = {
+      memory_.copy(clusters.clusters), static_cast<std::uint32_t>(clusters.clusters.size()),
+      memory_.copy(clusters.cells), memory_.copy(group_clusters(tool, level, clusters).tree)};
   view_.block_masses = memory_.copy(level_tasks.block_masses());
   const GroupedTasks<BlockTask> grouped = level_tasks.grouped();
   view_.block_tasks = memory_.copy(grouped.tasks);

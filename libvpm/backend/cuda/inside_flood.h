@@ -188,8 +188,9 @@ class Flood {
 
   // True always: the flood comes after the first step.
   __device__ static bool has_more(unsigned) { return true; }
-  // Returns this thread's part of the result. Call from all threads of the team.
-  __device__ ThreadResult run(UnseenSum& /*unseen*/) {
+  // Returns this thread's part of the result, and adds to `unseen`, that of the pose, what is
+  // unknown. Call from all threads of the team.
+  __device__ ThreadResult run(UnseenSum& unseen) {
     const RefinedCounters found = read_for_block(counters_);
     if (found.hidden > 0 || found.far > 0) {
       cut_.list();
@@ -215,7 +216,12 @@ class Flood {
           [&](const FarPiece& piece) { add_atomically(piece.sum, notes_.sums[piece.cell]); });
       team_.sync();
     }
-    return add_up_cells();
+    const ThreadResult result = add_up_cells();
+    if constexpr (TellsUnknown<Surface>) {
+      team_.sync();
+      add_unknown(unseen.unseen);
+    }
+    return result;
   }
 
  private:
@@ -415,6 +421,43 @@ class Flood {
     notes_.words[i] = word | cell_bit::counted;
     result.sum.add(sum);
     ++(cut ? result.boundary : result.inside);
+  }
+
+  // Adds the cells of which nothing counts and nobody knows whether they are inside, as
+  // UnknownCells on the CPU does. A thread takes a cluster.
+  __device__ __noinline__ void add_unknown(ToolSum::Sum& unknown) const {
+    const ClustersView& clusters = level_.clusters;
+    ToolSum::Sum sum;
+    for (std::uint32_t k = team_.thread(); k < clusters.count; k += team_.threads()) {
+      const CellCluster& cluster = clusters.all[k];
+      ToolSum::Sum rest;
+      bool any_counts = false;
+      for (std::uint32_t row = cluster.begin; row < cluster.end; ++row) {
+        const std::uint32_t i = clusters.cells[row];
+        const bool counts = (notes_.words[i] & cell_bit::counted) != 0;
+        any_counts |= counts;
+        if (!counts) rest.add(level_.cell_masses[i].weight);
+      }
+      if (rest.value != 0 && is_unknown(cluster, any_counts)) sum.add(rest);
+    }
+    if (sum.value != 0) add_term(unknown.value, sum.value);
+  }
+  // True if it is unknown whether the cells of a cluster that do not count are inside.
+  __device__ bool is_unknown(const CellCluster& cluster, bool any_counts) const {
+    const auto classify = [&](const CellCluster& ball) {
+      return surface_.classify_ball(to_surface_ * ball.center, ball.radius);
+    };
+    for (const GroupTreeNode* node = level_.clusters.tree;;) {
+      if (cluster.begin >= node->ball.end) {
+        node = level_.clusters.tree + node->next;
+        continue;
+      }
+      const auto in_ball = classify(node->ball);
+      if (in_ball.side == Side::no_surface) return surface_.is_unknown(in_ball);
+      if (node->group != GroupTreeNode::kNone) break;
+      ++node;
+    }
+    return !any_counts && surface_.is_unknown(classify(cluster));
   }
 
   const LevelView& level_;

@@ -81,6 +81,7 @@ __global__ void add_body(const RawResult* answers, std::size_t count, bool is_fi
   if (is_first) sums[k] = SceneSum();
   sums[k].add(answers[k].sum, answers[k].boundary, answers[k].inside);
   if (TellsSight<Surface>) sums[k].see(answers[k].unseen, answers[k].sum);
+  if (TellsUnknown<Surface>) sums[k].know(answers[k].unseen.unseen, answers[k].sum);
 }
 
 __global__ void tell(const DevicePoses poses, const ToolScale tool, const SceneSum* sums,

@@ -73,6 +73,14 @@ struct Edge {
   std::uint32_t larger, smaller;
 };
 
+// Lists the clusters of a level and the tree of their groups.
+struct ClustersView {
+  const CellCluster* all = nullptr;
+  std::uint32_t count = 0;
+  const std::uint32_t* cells = nullptr;  // of their rows
+  const GroupTreeNode* tree = nullptr;
+};
+
 // Points to one level of a tool.
 struct LevelView {
   std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // count: spheres
@@ -92,6 +100,7 @@ struct LevelView {
   const Edge* edges = nullptr;                // ordered by their larger index
   const std::uint32_t* edge_begin = nullptr;  // edges by larger index; count + 1 entries
   const TaskBall* cluster_balls = nullptr;    // of each cell's cluster
+  ClustersView clusters;
   ToolRadius tool_radius;
 
   VPM_HD CellView cell(std::uint32_t i) const {
@@ -121,6 +130,7 @@ template <class Surface>
 BodySum sum_of(const RawResult& raw) {
   BodySum sum{raw.sum, raw.boundary, raw.inside, std::nullopt, std::nullopt};
   if (TellsSight<Surface>) sum.unseen = raw.unseen;
+  if (TellsUnknown<Surface>) sum.unknown = raw.unseen.unseen;
   return sum;
 }
 

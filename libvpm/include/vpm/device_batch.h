@@ -31,8 +31,8 @@ struct DevicePoses {
 };
 
 // Answer to one pose of DevicePoses, as Result has it. A pose that Query::run refuses has NaN in
-// all its fractions, volumes and vectors, and 0 spheres. What a camera knows is NaN where Result
-// has none.
+// all its fractions, volumes and vectors, and 0 spheres. What is known of the tool is NaN where
+// Result tells nothing.
 struct DeviceResult {
   double volume, volume_fraction;
   Vec3 force, torque;

@@ -93,13 +93,13 @@ struct Contact {
   friend constexpr bool operator==(const Contact&, const Contact&) = default;
 };
 
-// What a camera knows of the tool, as fractions of its volume, wherever solids are. With the part
-// in the camera's own body, which is all of volume_fraction without solids, they add up to 1.
+// What a camera knows of the tool, or points without one, as fractions of its volume, wherever
+// solids are. With the part in that body, all of volume_fraction without solids, they add up to 1.
 struct Visibility {
-  double seen_free = 0;    // before the surface that the camera sees
-  double unseen = 0;       // hidden by the surface, and no part of the volume; or where nothing was
-                           // measured (holes wider than four pixels)
-  double out_of_view = 0;  // outside of the image, or behind the camera
+  double seen_free = 0;    // before the surface that the camera sees; outside of what points show
+  double unseen = 0;       // no part of the volume, but hidden by the surface, where nothing was
+                           // measured (holes wider than four pixels), or where a scan is open
+  double out_of_view = 0;  // outside of the image, or behind the camera; 0 of points
 
   friend constexpr bool operator==(const Visibility&, const Visibility&) = default;
 };
@@ -122,8 +122,8 @@ struct Result {
   // Of the scene's solids, if any: the largest Overlap::closure (vpm/solid.h), by which the
   // boundary of what the tool shares with one misses to be closed. At most 1e-8.
   std::optional<double> closure;
-  // What the scene's camera knows, by the refined measure, with the volume in its own body. Of
-  // solids alone all is seen. Nothing is told of points without a camera, nor of several cameras.
+  // What the scene's camera knows, by the refined measure, with the volume in its own body; without
+  // one, what its points know. Of solids alone all is seen. Of several such bodies nothing is told.
   std::optional<Visibility> visibility;
   // Of the volume, m^3, if QueryOptions::interval asks: for noise of the measured surface, what
   // cameras disagree by, and the tool's samples and planes; not for what was not seen, nor for

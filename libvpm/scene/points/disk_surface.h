@@ -181,8 +181,26 @@ struct DiskSurface {
     double radius = 0;
   };
   VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
-    const std::uint32_t point = feet.nearest_touching(center, radius, radii);
+    return class_by_point(feet.nearest_touching(center, radius, radii), center, radius);
+  }
+  // Returns the class of a ball whose nearest touching point is known.
+  VPM_HD static BallClass class_by_point(std::uint32_t point, Vec3 center, double radius) {
     return {point == kNoPoint ? Side::no_surface : Side::ambiguous, point, center, radius};
+  }
+  // True if nobody knows whether a ball of which nothing counts is inside. If no disk touches it,
+  // that is so where its middle is behind the nearest disk and either more directions lead to backs
+  // of disks than outside of a closed surface, or the disks are walls about free space. If one
+  // does, the winding number is not exact, but the middle is surely behind that disk or not. A ball
+  // without surface may have a point near it, where the search begins.
+  VPM_HD bool is_unknown(const BallClass& in_ball) const {
+    const Vec3 x = in_ball.center;
+    if (in_ball.side != Side::no_surface)
+      return is_well_behind(x, sample_of_point(x, in_ball.point));
+    const SurfaceSample nearest =
+        sample(x, in_ball.point != kNoPoint ? in_ball.point : feet.entry.nearest);
+    if (!nearest.known) return true;
+    return nearest.distance < 0 && (winding.at(x) > DiskWinding::kMayBeInside ||
+                                    (winding.may_surround && is_well_behind(x, nearest)));
   }
   VPM_HD bool may_be_flat(const BallClass& in_ball) const {
     return in_ball.point != kNoPoint;
@@ -237,6 +255,13 @@ struct DiskSurface {
   // Radius of a disk's rim, in sampling radii: so wide that noise leaves no gaps between disks.
   static constexpr double kRim = 3;
   static constexpr double kSlot = -0.8;  // largest cosine between the sides of a slot
+  static constexpr double kWellBehind = 0.5;  // least cosine, as between two walls
+
+  // True if the way from a place behind the nearest disk to it meets its back rather than its rim:
+  // the plane of a disk at the rim of a scan goes on where nothing was seen.
+  VPM_HD static bool is_well_behind(Vec3 x, const SurfaceSample& nearest) {
+    return -nearest.distance > kWellBehind * norm(nearest.foot - x);
+  }
 
   template <class Distances>
   VPM_HD bool face_one_way_by(Vec3 center, double radius, Vec3 n, double least) const {

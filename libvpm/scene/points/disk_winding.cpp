@@ -153,9 +153,9 @@ DiskDipoles::DiskDipoles(const DiskWindows& windows)
 }
 
 void DiskDipoles::find_sides(const PointTree& tree) {
-  // On the surface of one solid the mean of both sides is 1/2, on an inner face 3/2, and before a
-  // wide wall, of which one side was seen, 0.
-  constexpr double kInner = 1, kMaybeInner = 0.75, kMayEnclose = 0.25;
+  // On the surface of one solid the mean of both sides is 1/2, on an inner face 3/2, before a wide
+  // wall, of which one side was seen, 0, and on the walls about a room -1/2.
+  constexpr double kInner = 1, kMaybeInner = 0.75, kMayEnclose = DiskWinding::kMayBeInside;
   const DiskWinding winding = this->winding();
   const auto leaf_of = [](std::uint32_t i) { return i / PointTree::kLeafSize; };
   std::vector<char> is_inner(count_);
@@ -173,6 +173,7 @@ void DiskDipoles::find_sides(const PointTree& tree) {
   };
   const bool has_inner = std::ranges::any_of(of_leaf, [](double n) { return n > kMaybeInner; });
   may_enclose_ = std::ranges::any_of(of_leaf, [](double n) { return n > kMayEnclose; });
+  may_surround_ = std::ranges::any_of(of_leaf, [](double n) { return n < -kMayEnclose; });
   if (!has_inner) return;
   for_leaves(count_, [&](std::uint32_t begin, std::uint32_t end) {
     if (!is_near_inner(begin)) return;

@@ -42,11 +42,19 @@ struct alignas(16) WindingNode {
 
 // Holds plain pointers to a cloud's dipoles, for host or device.
 struct DiskWinding {
+  // Above this number a place may be inside of something that was not seen as a whole. Right behind
+  // a wide wall the number is 1/2; it is half of that where all within 60 degrees of one direction
+  // is wall, and far above the hundredths by which it errs outside of a closed surface.
+  static constexpr double kMayBeInside = 0.25;
+
   const WindingDisk* disks = nullptr;   // in the order of the tree's points
   const WindingNode* nodes = nullptr;   // of the tree, as its boxes
   std::uint32_t count = 0, leaves = 0;  // as in PointTree; 0: there is no surface
   // True if the disks may enclose some place: not of scans that show one side of everything.
   bool may_enclose = false;
+  // True if free space lies amid the disks, as in a scanned room: there the number is -1, and 0 is
+  // not outside but behind the walls.
+  bool may_surround = false;
 
   // Returns the winding number at a place about the cloud's origin: 1 inside of a closed surface
   // and 0 outside, to some hundredths; behind an open one what it covers of all directions. On the
@@ -100,7 +108,7 @@ class DiskDipoles {
   explicit DiskDipoles(const DiskWindows& windows);
 
   DiskWinding winding() const {
-    return {disks_.data(), nodes_.data(), count_, leaves_, may_enclose_};
+    return {disks_.data(), nodes_.data(), count_, leaves_, may_enclose_, may_surround_};
   }
   const std::vector<WindingDisk>& disks() const { return disks_; }
   const std::vector<WindingNode>& nodes() const { return nodes_; }
@@ -115,7 +123,7 @@ class DiskDipoles {
   std::vector<WindingNode> nodes_;
   std::vector<std::uint32_t> inner_;
   std::uint32_t count_ = 0, leaves_ = 0;
-  bool may_enclose_ = false;
+  bool may_enclose_ = false, may_surround_ = false;
 };
 
 }  // namespace vpm

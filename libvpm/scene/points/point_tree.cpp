@@ -167,6 +167,7 @@ void PointTree::enter_near(Vec3 center, double reach) {
     entry.boxes.set(k, k < size ? box_of(held[k]) : kEmpty);
   }
   entry.center = center;
+  entry.nearest = nearest_point;
   entry.squared_reach = reach * reach;
   entry.ball = ball;
 }

@@ -107,8 +107,9 @@ struct TreeEntry {
   BoxQuad boxes;
   std::uint32_t nodes[4] = {};  // ascending; unused ones have empty boxes
   Vec3 center;
-  double squared_reach = -1;  // places may be this far from the centre, m^2; negative: none
-  double ball = 0;            // radius about each such place in which all points are held, m
+  double squared_reach = -1;         // places may be this far from the centre, m^2; negative: none
+  double ball = 0;                   // radius about each such place in which all points are held, m
+  std::uint32_t nearest = kNoPoint;  // to the centre
 
   bool holds(Vec3 x, double radius) const {
     return squared_norm(x - center) <= squared_reach && radius <= ball;

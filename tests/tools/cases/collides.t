@@ -80,11 +80,35 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses all.txt --collides-only -
 2> vpm-query: error: --collides-only does not go with poses in batches, chosen by --batch: leave it out
 [2]
 
-# Points without a camera and the measure as printed do not tell what was seen.
+# Points without a camera tell what is outside, and what nobody knows since the scan is open: below a table top. The measure as printed does not.
+$ python3 -c 'print("ply\nformat ascii 1.0\nelement vertex 3600", *("property float " + p for p in "x y z nx ny nz".split()), "end_header", *(f"{i / 100 - .295} {k / 100 - .295} -1 0 0 1" for i in range(60) for k in range(60)), sep="\n")' > table.ply && vpm-normals table.ply -o table.vpmc --quiet
+$ printf '%s\n' '0 0 -0.8 0 0 0 1' '0 0 -0.95 0 0 0 1' '0 0 -1.11 0 0 0 1' '0 0 -1.7 0 0 0 1' '9 0 -1.7 0 0 0 1' > table.txt && vpm-query --tool cube.vpmg --cloud table.vpmc --poses table.txt --collides --quiet -o table.jsonl
+2> vpm-query: warning: at 1 of the poses the tool is behind points that show one side only: whether it is inside is not known, and nothing counts; points from all sides would tell, or depth images with their cameras
+[10]
+$ python3 told.py < table.jsonl
+no 0.0 1.0 0.0 0.0
+yes 0.25 0.75 0.0 0.0
+unknown 0.0 0.0 1.0 0.0
+no 0.0 1.0 0.0 0.0
+no 0.0 1.0 0.0 0.0
+$ $VALIDATE query-result table.jsonl
+$ vpm-query --tool cube.vpmg --cloud table.vpmc --poses table.txt --collides-only --threads 1 --quiet | grep -o '"collides":"[a-z]*"'
+"collides":"no"
+"collides":"yes"
+"collides":"unknown"
+"collides":"no"
+"collides":"no"
+[10]
+$ vpm-query --tool cube.vpmg --cloud table.vpmc --pose '0 0 -1.11 0 0 0 1' --collides --unseen 1 --quiet -o /dev/null
+2> vpm-query: warning: at 1 of the poses the tool is behind points that show one side only: whether it is inside is not known, and nothing counts; points from all sides would tell, or depth images with their cameras
+$ vpm-query --tool cube.vpmg --cloud table.vpmc --poses table.txt --quiet -o table.csv && cut -d, -f 7-10 table.csv | sed -n '1p;2p'
+volume_fraction,seen_free,unseen,out_of_view
+0.0,1.0,0.0,0.0
+2> vpm-query: warning: at 1 of the poses the tool is behind points that show one side only: whether it is inside is not known, and nothing counts; points from all sides would tell, or depth images with their cameras
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud points.vpmc --pose '0 0 0.7 0 0 0 1' --collides | grep -o '"collides":"[a-z]*"\|seen_free'
-"collides":"unknown"
-[11]
+seen_free
+"collides":"no"
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose '0 0 0.7 0 0 0 1' --measure paper --collides | grep -o '"collides":"[a-z]*"\|seen_free'
 "collides":"unknown"
 [11]
