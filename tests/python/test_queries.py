@@ -21,6 +21,17 @@ def test_half_of_a_cube_is_behind_a_wall(tool, scene):
     assert result.seen_free == pytest.approx(0.5, abs=2e-3)
 
 
+def test_below_points_of_one_side_nobody_knows(tool):
+    across = 0.02 * np.arange(-30, 30) + 0.01
+    places = np.array([[x, y, 0] for x in across for y in across])
+    table = vpm.Scene(vpm.PointCloud.from_points(places, np.tile([0, 0, 1.0], (len(places), 1))))
+    query = vpm.Query(tool)
+    above, below = (query.run(table, [0, 0, z, 0, 0, 0, 1]) for z in (0.15, -0.15))
+    assert (above.volume, above.seen_free, above.unseen, above.out_of_view) == (0, 1, 0, 0)
+    assert below.volume == 0 and below.unseen == pytest.approx(1, abs=1e-9)
+    assert above.collides() is vpm.Collides.no and below.collides() is vpm.Collides.unknown
+
+
 def test_a_batch_has_the_bits_of_single_poses_in_every_form(tool, scene):
     poses = poses_into_the_wall(50)
     query = vpm.Query(tool)

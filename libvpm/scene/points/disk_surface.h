@@ -254,7 +254,7 @@ struct DiskSurface {
   static constexpr double kBeyondBorder = 0.2;
   // Radius of a disk's rim, in sampling radii: so wide that noise leaves no gaps between disks.
   static constexpr double kRim = 3;
-  static constexpr double kSlot = -0.8;  // largest cosine between the sides of a slot
+  static constexpr double kSlot = -0.8;       // largest cosine between the sides of a slot
   static constexpr double kWellBehind = 0.5;  // least cosine, as between two walls
 
   // True if the way from a place behind the nearest disk to it meets its back rather than its rim:
