@@ -160,7 +160,7 @@ function imageLayers(layer) {
   const points = {name: layer.name.replace('surface', 'points'), type: 'points', on: false, object: shown.points, swatch: look(POINT_COLOR)};
   const unseen = {
     name: 'not seen by the camera' + of, type: 'unseen', on: false, object: shown.unseen, swatch: {color: UNSEEN_COLOR},
-    legend: [['hidden behind the surface', UNSEEN_COLOR], ['not measured', null, 'hatch'], ['seen free', '#bfe1f2']],
+    legend: [['hidden behind the surface', UNSEEN_COLOR], ['not measured', null, 'hatch'], ['out of view', '#c9b3df'], ['seen free', '#bfe1f2']],
   };
   const camera = {name: 'camera' + of, type: 'camera', on: true, object: shown.frustum, swatch: {color: CAMERA_COLOR, shape: 'line'}};
   const all = [surface, points, unseen, camera];

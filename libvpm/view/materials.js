@@ -125,7 +125,10 @@ function sheetMaterial() {
       varying vec3 vCamera;
       void main() {
         vec2 at = vCamera.xy / vCamera.z * lens.xy + lens.zw + 0.5;
-        if (vCamera.z <= 0.0 || at.x < 0.0 || at.y < 0.0 || at.x >= size.x || at.y >= size.y) discard;
+        if (vCamera.z <= 0.0 || at.x < 0.0 || at.y < 0.0 || at.x >= size.x || at.y >= size.y) {
+          gl_FragColor = vec4(0.55, 0.3, 0.75, 0.3);
+          return;
+        }
         vec4 bytes = texture2D(depth, at / size) * 255.0;
         float steps = bytes.r + 256.0 * bytes.g;
         float seen = range.x + (steps - 1.0) * (range.y - range.x) / 65534.0;

@@ -221,6 +221,7 @@ TEST(Collides, IsUnknownWhereTooMuchIsNotSeen) {
   EXPECT_EQ(collides(result), Collides::unknown);
   EXPECT_EQ(collides(result, 0.031), Collides::no);
   EXPECT_EQ(collides(result, 0), Collides::unknown);
+  EXPECT_EQ(collides(result, std::nan("")), Collides::unknown);
   result.volume = 1e-12;
   for (const double limit : {0.0, 0.02, 1.0}) EXPECT_EQ(collides(result, limit), Collides::yes);
 }

@@ -77,6 +77,10 @@ def boundary(r, g, b):
     return (r > 0.45) & (g > 0.4 * r) & (g < 0.68 * r) & (b < 0.25 * r)
 
 
+def out_of_view(r, g, b):
+    return (b > 1.05 * r) & (r > 1.05 * g)
+
+
 def write_depth(name, depth):
     """Writes a 16-bit grey PNG."""
     rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in depth)
@@ -255,6 +259,23 @@ class Query(PageTest):
         without = scene(page)
         page.evaluate("vpm.setLayer('not seen by the camera', true)")
         self.assertGreater(numpy.mean(without - scene(page) > 0.05), 0.01)  # it is darker
+
+    def test_what_is_out_of_view_has_its_own_colour(self):
+        for name, x in (("in_view", 0), ("half_in_view", 0.58)):
+            run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--pose", f"{x},0,0.95,0,0,0,1", "-o", f"{name}.jsonl",
+                "--view", f"{name}.html", "--quiet")
+            page = self.open(f"{name}.html")
+            page.evaluate("vpm.setView('side')")
+            without = share(scene(page), out_of_view)
+            page.evaluate("vpm.setLayer('not seen by the camera', true)")
+            shown = share(scene(page), out_of_view) - without
+            fraction = results(f"{name}.jsonl")[0]["out_of_view"]
+            if name == "in_view":
+                self.assertEqual(fraction, 0)
+                self.assertLess(shown, 0.001)
+            else:
+                self.assertGreater(fraction, 0.2)
+                self.assertGreater(shown, 0.02)
 
     def test_names_are_text(self):
         (FOLDER / "scripts").mkdir(exist_ok=True)

@@ -139,13 +139,13 @@ enum class Collides : std::uint8_t { no, yes, unknown };
 // Part of the tool that may be unseen or out of view where collides() answers no.
 inline constexpr double kUnseenLimit = 0.02;
 
-// Returns yes if a volume of the tool is in the solid; else unknown, if more of it than
-// `unseen_limit` is unseen or out of view, or nobody tells what was seen; else no. Thread-safe.
+// Returns yes if a volume of the tool is in the solid; else no, if the answer tells that at most
+// `unseen_limit` of it is unseen or out of view; else unknown, also for a NaN. Thread-safe.
 constexpr Collides collides(const Result& result, double unseen_limit = kUnseenLimit) {
   if (result.volume > 0) return Collides::yes;
   if (!result.visibility) return Collides::unknown;
   const double not_seen = result.visibility->unseen + result.visibility->out_of_view;
-  return not_seen > unseen_limit ? Collides::unknown : Collides::no;
+  return not_seen <= unseen_limit ? Collides::no : Collides::unknown;
 }
 
 }  // namespace vpm
